@@ -1,0 +1,87 @@
+//! What can be wrong with the input. Not converging is a [`crate::Status`], never an error.
+
+use thiserror::Error;
+
+/// Why a curve or a setting was refused. `component` and `vertex` count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Error {
+    /// A curve without components.
+    #[error("the curve has no vertices")]
+    Empty,
+    /// A component of one or two vertices is no closed curve.
+    #[error("component {component} has {n} vertices; a closed curve needs at least 3")]
+    TooFewVertices {
+        /// Which component.
+        component: usize,
+        /// How many vertices it has.
+        n: usize,
+    },
+    /// A coordinate is NaN or infinite, or so large or small that its square is.
+    #[error("vertex {vertex} of component {component} is not finite")]
+    NotFinite {
+        /// Which component.
+        component: usize,
+        /// Which vertex of it.
+        vertex: usize,
+    },
+    /// Two consecutive vertices coincide, so that the edge between them has no direction.
+    #[error("vertices {vertex} and {next} of component {component} coincide; remove one of them")]
+    Coincident {
+        /// Which component.
+        component: usize,
+        /// The first of the two vertices.
+        vertex: usize,
+        /// The second of the two vertices.
+        next: usize,
+    },
+    /// Two edges that are not neighbours meet: such a curve has no knot type.
+    #[error(
+        "the curve crosses itself: the edge after vertex {vertex} of component {component} meets \
+         the edge after vertex {other_vertex} of component {other_component}; move one of them"
+    )]
+    SelfCrossing {
+        /// Component of the first edge.
+        component: usize,
+        /// Vertex at which the first edge starts.
+        vertex: usize,
+        /// Component of the second edge.
+        other_component: usize,
+        /// Vertex at which the second edge starts.
+        other_vertex: usize,
+    },
+    /// The rope around the curve is too thin for its length to be filled with beads.
+    #[error(
+        "the curve comes so close to itself that a rope around it needs over {limit} beads; \
+         move its strands apart"
+    )]
+    TooThin {
+        /// The largest number of beads that is tried.
+        limit: usize,
+    },
+    /// The edge length reached sqrt 2 R: beads that far apart let strands through.
+    #[error(
+        "{n} vertices are too few: the edges of this knot would be {dl:.2} R long and must stay \
+         below 1.4 R; ask for at least {needed}"
+    )]
+    TooCoarse {
+        /// The number of vertices that was asked for.
+        n: usize,
+        /// The edge length it leads to.
+        dl: f64,
+        /// The smallest number that will do.
+        needed: usize,
+    },
+    /// A setting lies outside its range.
+    #[error("setting {name} = {value} is out of range: {range}")]
+    Setting {
+        /// Name of the setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
+}
+
+/// A [`std::result::Result`] with this crate's [`Error`].
+pub type Result<T> = std::result::Result<T, Error>;

@@ -1,0 +1,302 @@
+//! The inscribed knot K_P: arcs tangent to the edges of P, and its sampling at equal chords.
+//!
+//! Proposition 2 of Baranska, Pieranski, Rawdon, "Ropelength of tight polygonal knots": an arc of
+//! radius Rad(v_i) touches both edges at v_i at the distance t_i (half an edge) from it; together
+//! the arcs make a C^{1,1} curve, here with straight pieces between arcs where edges are unequal.
+//!
+//! A coarse polygon need not have the knot type of its K_P: another strand may pass between corner
+//! and arc. [`Inscribed::clear_of_strands`] therefore shortens t_i until the ball of radius t_i
+//! about v_i meets only the two edges at v_i; these balls are disjoint, and rounding the corners
+//! inside them moves no strand through another.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::curve::{Curve, turning_angle};
+use crate::embedded::check_embedded;
+use crate::error::{Error, Result};
+use crate::measures::measure;
+use crate::neighbours::{Separation, for_each_close_pair};
+
+/// The inscribed knot of a curve, all components.
+pub struct Inscribed {
+    components: Vec<Vec<Piece>>,
+}
+
+/// The arc at one vertex and the straight piece that follows it.
+struct Piece {
+    /// Where the arc leaves the edge before the vertex.
+    start: DVec3,
+    /// Direction of that edge.
+    forward: DVec3,
+    /// Unit vector towards the arc's centre.
+    inward: DVec3,
+    angle: f64,
+    arc: f64,
+    /// Direction of the edge after the vertex.
+    onward: DVec3,
+    straight: f64,
+    /// Arclength at `start`.
+    at: f64,
+}
+
+impl Piece {
+    fn point(&self, s: f64) -> DVec3 {
+        let on_arc = s.min(self.arc);
+        let mut point = self.start + (s - on_arc) * self.onward;
+        if self.angle > 0. {
+            let radius = self.arc / self.angle;
+            let half = 0.5 * on_arc / radius;
+            point +=
+                2. * radius * half.sin() * (half.cos() * self.forward + half.sin() * self.inward);
+        } else {
+            point += on_arc * self.forward;
+        }
+        point
+    }
+
+    fn length(&self) -> f64 {
+        self.arc + self.straight
+    }
+}
+
+impl Inscribed {
+    /// K_P as the paper has it, each arc starting half an edge (the shorter one) from its vertex.
+    pub fn new(curve: &Curve) -> Self {
+        Self::with_tangents(curve, &half_edges(curve))
+    }
+
+    /// K_P with arcs short enough for no other strand to lie between a corner and its arc.
+    pub fn clear_of_strands(curve: &Curve) -> Self {
+        let mut tangents = half_edges(curve);
+        for (t, clearance) in tangents.iter_mut().zip(clearances(curve)) {
+            *t = t.min(0.45 * clearance);
+        }
+        Self::with_tangents(curve, &tangents)
+    }
+
+    fn with_tangents(curve: &Curve, tangents: &[f64]) -> Self {
+        let components = curve
+            .ranges()
+            .map(|range| pieces(&curve.vertices()[range.clone()], &tangents[range]))
+            .collect();
+        Self { components }
+    }
+
+    /// Length of each component.
+    pub fn lengths(&self) -> impl Iterator<Item = f64> + '_ {
+        self.components.iter().map(|pieces| length(pieces))
+    }
+
+    /// The curve of `n[c]` vertices on each component, all chords of a component equal, the first
+    /// vertex `shift` edges after the start; and the largest ratio of an arc to its chord.
+    pub fn sample(&self, n: &[usize], shift: f64) -> (Curve, f64) {
+        let sampled: Vec<_> =
+            self.components.iter().zip(n).map(|(p, &n)| equal_chords(p, n, shift)).collect();
+        let ratio = sampled.iter().map(|(_, ratio)| *ratio).fold(1., f64::max);
+        (Curve::from_components(sampled.into_iter().map(|(v, _)| v).collect()), ratio)
+    }
+}
+
+/// Shares `n` vertices out to the components in proportion to their lengths, at least 3 to each.
+pub fn share_out(n: usize, lengths: &[f64]) -> Vec<usize> {
+    let per_length = n as f64 / lengths.iter().sum::<f64>();
+    let mut shares: Vec<_> = lengths.iter().map(|l| ((l * per_length) as usize).max(3)).collect();
+    while shares.iter().sum::<usize>() < n {
+        let lacking = |c: usize| lengths[c] * per_length - shares[c] as f64;
+        let c = (0..shares.len()).max_by(|&a, &b| lacking(a).total_cmp(&lacking(b)));
+        shares[c.expect("a curve has components")] += 1;
+    }
+    shares
+}
+
+/// K_P sampled with `n` vertices in all at equal chords: how a tight rope is refined or coarsened.
+pub fn refine(curve: &Curve, n: usize, shift: f64) -> Curve {
+    let inscribed = Inscribed::new(curve);
+    let shares = share_out(n, &inscribed.lengths().collect::<Vec<_>>());
+    inscribed.sample(&shares, shift).0
+}
+
+/// Edge length of a loose rope, as a multiple of its radius.
+const LOOSE_EDGE: f64 = 0.5;
+/// The largest number of beads a loose rope may have.
+const MOST_BEADS: usize = 200_000;
+/// Largest ratio of arc to chord at which a sampled curve is taken to follow K_P.
+const MOST_BULGE: f64 = 1.05;
+
+/// A rope of the curve's knot type, from any embedded polygon: K_P sampled with edges at most half
+/// as long as its thickness R_s.
+///
+/// # Errors
+/// [`Error::TooThin`] where that takes over 200,000 beads.
+pub fn rope_curve(curve: &Curve) -> Result<Curve> {
+    check_embedded(curve)?;
+    let given = measure(curve);
+    let inscribed = match given.r_c {
+        Some(_) => Inscribed::new(curve),
+        None => Inscribed::clear_of_strands(curve),
+    };
+    let lengths: Vec<_> = inscribed.lengths().collect();
+    let mut dl = LOOSE_EDGE * given.r_c.unwrap_or(given.dl);
+    loop {
+        let n = (lengths.iter().sum::<f64>() / dl).ceil();
+        if n > MOST_BEADS as f64 {
+            return Err(Error::TooThin { limit: MOST_BEADS });
+        }
+        let shares = share_out((n as usize).max(12 * lengths.len()), &lengths);
+        let (sampled, bulge) = inscribed.sample(&shares, 0.);
+        let r_s = measure(&sampled).r_s;
+        if dl <= 1.1 * LOOSE_EDGE * r_s && bulge <= MOST_BULGE {
+            return Ok(sampled);
+        }
+        dl = (0.7 * dl).min(LOOSE_EDGE * r_s).max(0.25 * dl);
+    }
+}
+
+fn half_edges(curve: &Curve) -> Vec<f64> {
+    let mut halves = Vec::with_capacity(curve.n());
+    for c in 0..curve.components() {
+        let edges: Vec<_> = curve.edge_lengths(c).collect();
+        halves.extend(
+            (0..edges.len())
+                .map(|i| 0.5 * edges[i].min(edges[(i + edges.len() - 1) % edges.len()])),
+        );
+    }
+    halves
+}
+
+/// Distance of each vertex to the edges that do not end there, as far as it is below the longest
+/// edge's half (a nearer end of such an edge is then closer than that edge).
+fn clearances(curve: &Curve) -> Vec<f64> {
+    let mut clearances = vec![f64::INFINITY; curve.n()];
+    let longest = (0..curve.components()).flat_map(|c| curve.edge_lengths(c)).fold(0., f64::max);
+    let separation = Separation::by_index(curve, &vec![1; curve.components()]);
+    for_each_close_pair(curve, &separation, 1.01 * longest, |i, j, _| {
+        for (i, j) in [(i, j), (j, i)] {
+            for (from, to) in edges_at(curve, j) {
+                if from != i && to != i {
+                    let d = distance_to_edge(curve.vertices(), i, from, to);
+                    clearances[i] = clearances[i].min(d);
+                }
+            }
+        }
+        1.01 * longest
+    });
+    clearances
+}
+
+fn edges_at(curve: &Curve, i: usize) -> [(usize, usize); 2] {
+    let Range { start, end } = curve.range(curve.component_of(i));
+    let next = if i + 1 == end { start } else { i + 1 };
+    let prev = if i == start { end - 1 } else { i - 1 };
+    [(prev, i), (i, next)]
+}
+
+fn distance_to_edge(v: &[DVec3], i: usize, from: usize, to: usize) -> f64 {
+    let edge = v[to] - v[from];
+    let along = ((v[i] - v[from]).dot(edge) / edge.length_squared()).clamp(0., 1.);
+    v[i].distance(v[from] + along * edge)
+}
+
+fn pieces(v: &[DVec3], tangents: &[f64]) -> Vec<Piece> {
+    let n = v.len();
+    let mut at = 0.;
+    (0..n)
+        .map(|i| {
+            let forward = (v[i] - v[(i + n - 1) % n]).normalize();
+            let after = v[(i + 1) % n] - v[i];
+            let onward = after.normalize();
+            let angle = turning_angle(forward, onward);
+            let half_tan = (0.5 * angle).tan();
+            let t = tangents[i];
+            let piece = Piece {
+                start: v[i] - t * forward,
+                forward,
+                inward: onward.reject_from_normalized(forward).normalize_or_zero(),
+                angle,
+                arc: if half_tan > 0. { t * angle / half_tan } else { 2. * t },
+                onward,
+                straight: (after.length() - t - tangents[(i + 1) % n]).max(0.),
+                at,
+            };
+            at += piece.length();
+            piece
+        })
+        .collect()
+}
+
+fn length(pieces: &[Piece]) -> f64 {
+    pieces.last().map_or(0., |p| p.at + p.length())
+}
+
+/// Finds the chord that leads once around in exactly `n` steps, by the secant method.
+fn equal_chords(pieces: &[Piece], n: usize, shift: f64) -> (Vec<DVec3>, f64) {
+    let around = length(pieces);
+    let first = around / n as f64;
+    let start = shift * first;
+    let mut walk = Walk { pieces, around, points: Vec::with_capacity(n), ratio: 1. };
+    let mut chords = [first, first * (1. - 1e-3)];
+    let mut gaps = chords.map(|chord| walk.gap(start, chord, n));
+    for _ in 0..50 {
+        let [(a, gap_a), (b, gap_b)] = [(chords[0], gaps[0]), (chords[1], gaps[1])];
+        if gap_b.abs() <= 1e-14 * around || gap_a == gap_b {
+            break;
+        }
+        let chord = (b - gap_b * (b - a) / (gap_b - gap_a)).clamp(0.5 * b, 2. * b);
+        chords = [b, chord];
+        gaps = [gap_b, walk.gap(start, chord, n)];
+    }
+    (walk.points, walk.ratio)
+}
+
+struct Walk<'a> {
+    pieces: &'a [Piece],
+    around: f64,
+    points: Vec<DVec3>,
+    ratio: f64,
+}
+
+impl Walk<'_> {
+    /// Takes `n` steps of equal chords and returns by how much arclength they lead too far.
+    fn gap(&mut self, start: f64, chord: f64, n: usize) -> f64 {
+        self.points.clear();
+        self.ratio = 1.;
+        let mut s = start;
+        let mut at = self.pieces.partition_point(|p| p.at <= start).max(1) - 1;
+        let mut point = self.point(&mut at, s);
+        for _ in 0..n {
+            self.points.push(point);
+            let from = s;
+            s += chord;
+            // The chord grows as fast as the arc, up to second order, so this converges quickly.
+            for _ in 0..40 {
+                point = self.point(&mut at, s);
+                let missing = chord - point.distance(self.points[self.points.len() - 1]);
+                s = (s + missing).clamp(from + chord, from + 3. * chord);
+                if missing.abs() <= 1e-15 * chord {
+                    break;
+                }
+            }
+            self.ratio = self.ratio.max((s - from) / chord);
+        }
+        s - start - self.around
+    }
+
+    /// The point at arclength `s`; `at` remembers the piece, since steps go forward.
+    fn point(&self, at: &mut usize, s: f64) -> DVec3 {
+        let turns = (s / self.around).floor();
+        let s = s - turns * self.around;
+        let n = self.pieces.len();
+        if s + 0.5 * self.around < self.pieces[*at].at {
+            *at = 0;
+        }
+        while s < self.pieces[*at].at {
+            *at -= 1;
+        }
+        while *at + 1 < n && s >= self.pieces[*at + 1].at {
+            *at += 1;
+        }
+        self.pieces[*at].point(s - self.pieces[*at].at)
+    }
+}

@@ -1,0 +1,27 @@
+//! The core of sono: tight knots on the bead rope.
+//!
+//! **Curve -> measures** is one road, **curve -> rope -> sweeps of SONO -> tight curve** the other.
+//! Dependencies point one way only:
+//! `error, curve <- neighbours <- measures <- inscribed, embedded, procedures <- rope <- tighten
+//! <- python`.
+
+pub mod curve;
+pub mod embedded;
+pub mod error;
+pub mod inscribed;
+pub mod measures;
+pub mod neighbours;
+pub mod procedures;
+#[cfg(feature = "python")]
+mod python;
+pub mod rope;
+pub mod settings;
+pub mod tighten;
+
+pub use curve::Curve;
+pub use embedded::check_embedded;
+pub use error::{Error, Result};
+pub use inscribed::refine;
+pub use measures::{Measures, measure};
+pub use settings::Settings;
+pub use tighten::{Outcome, Stage, Status, Tightener};

@@ -1,0 +1,262 @@
+//! Which vertices come close to which: a spatial hash of arcs, halved down to single vertices.
+//!
+//! A fine rope has hundreds of vertices within one radius, so hashing vertices would cost their
+//! square. Instead the curve is cut into arcs about as long as the reach, the arcs are hashed, and
+//! pairs of arcs that may come close are halved until single vertices are left. No pair is missed:
+//!
+//! - An arc of length S lies in the ball of radius S/2 about the midpoint m of its ends, because
+//!   for each of its points |p - m| <= (|p - a| + |p - b|)/2 <= S/2.
+//! - Two arcs that come closer than `reach` therefore have midpoints closer than
+//!   reach + (S + S')/2 <= reach + longest arc =: side of a cell, so they are found in the same or
+//!   in touching cells.
+//!
+//! ```text
+//!   cell    cell    cell
+//! +-------+-------+-------+      x  midpoint of an arc
+//! |       |   o   |       |      o  midpoints of arcs it is compared with
+//! |   o   | x     |   o   |
+//! +-------+-------+-------+
+//! ```
+//!
+//! Vertices near each other along the curve are always close; which of them count is what
+//! [`Separation`] says.
+
+use glam::{DVec3, IVec3};
+
+use crate::curve::Curve;
+
+/// How far apart along the curve two vertices must be to count as a pair: by arclength (the
+/// measures) or by index distance (the engines). Vertices of different components always count.
+#[derive(Debug, Clone)]
+pub struct Separation {
+    /// Position of each vertex along its component.
+    position: Vec<f64>,
+    /// Once around each component, in the same unit.
+    around: Vec<f64>,
+    /// Smallest separation that counts, for each component.
+    least: Vec<f64>,
+}
+
+impl Separation {
+    /// Pairs at least `least[c]` apart by arclength along component `c`.
+    pub fn by_arclength(curve: &Curve, least: Vec<f64>) -> Self {
+        let position = arclengths(curve);
+        let around = (0..curve.components()).map(|c| curve.component_length(c)).collect();
+        Self { position, around, least }
+    }
+
+    /// Pairs with an index distance of at least `least[c]`.
+    pub fn by_index(curve: &Curve, least: &[usize]) -> Self {
+        Self {
+            position: curve.ranges().flat_map(|r| (0..r.len()).map(|i| i as f64)).collect(),
+            around: curve.ranges().map(|r| r.len() as f64).collect(),
+            least: least.iter().map(|&k| k as f64).collect(),
+        }
+    }
+
+    fn counts(&self, c: usize, i: usize, j: usize) -> bool {
+        let forth = self.position[j] - self.position[i];
+        forth.min(self.around[c] - forth) >= self.least[c]
+    }
+
+    /// Whether no pair of an earlier arc `a` and a later (or the same) arc `b` counts.
+    fn none_counts(&self, a: &Arc, b: &Arc) -> bool {
+        let longest_forth = self.position[b.last] - self.position[a.first];
+        let longest_back =
+            self.around[a.component] - (self.position[b.first] - self.position[a.last]);
+        longest_forth.min(longest_back) < self.least[a.component]
+    }
+}
+
+/// Vertices `first..=last` of one component; does not wrap around its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Arc {
+    component: usize,
+    first: usize,
+    last: usize,
+}
+
+impl Arc {
+    fn halves(self) -> (Self, Self) {
+        let middle = (self.first + self.last) / 2;
+        (Self { last: middle, ..self }, Self { first: middle + 1, ..self })
+    }
+
+    fn len(&self) -> usize {
+        self.last - self.first + 1
+    }
+}
+
+/// Calls `visit(i, j, distance squared)` for each pair `i < j` that counts and is closer than
+/// `reach`; what `visit` returns is the reach from there on (at most the one before).
+pub fn for_each_close_pair(
+    curve: &Curve,
+    separation: &Separation,
+    reach: f64,
+    visit: impl FnMut(usize, usize, f64) -> f64,
+) {
+    let arclength = arclengths(curve);
+    let arcs = cut_into_arcs(curve, &arclength, 0.5 * reach);
+    let mut search = Search { vertices: curve.vertices(), arclength, separation, reach, visit };
+    let grid = Grid::new(&arcs, &search, 1.5 * reach);
+    for (k, &a) in arcs.iter().enumerate() {
+        grid.for_each_near(k, |l| search.compare(a, arcs[l]));
+    }
+}
+
+/// The pair that counts and is closest, as (i, j, distance); `None` where no pair counts.
+pub fn closest_pair(curve: &Curve, separation: &Separation) -> Option<(usize, usize, f64)> {
+    let mut reach = 2. * curve.length() / curve.n() as f64;
+    loop {
+        let mut closest = None;
+        for_each_close_pair(curve, separation, reach, |i, j, squared| {
+            closest = Some((i, j, squared.sqrt()));
+            squared.sqrt()
+        });
+        if closest.is_some() || reach > curve.length() {
+            return closest;
+        }
+        reach *= 2.;
+    }
+}
+
+struct Search<'a, F> {
+    vertices: &'a [DVec3],
+    arclength: Vec<f64>,
+    separation: &'a Separation,
+    reach: f64,
+    visit: F,
+}
+
+impl<F: FnMut(usize, usize, f64) -> f64> Search<'_, F> {
+    fn ball(&self, arc: &Arc) -> (DVec3, f64) {
+        let middle = 0.5 * (self.vertices[arc.first] + self.vertices[arc.last]);
+        (middle, 0.5 * (self.arclength[arc.last] - self.arclength[arc.first]))
+    }
+
+    /// Visits the close pairs of two arcs, `a` not after `b`.
+    fn compare(&mut self, a: Arc, b: Arc) {
+        if a.component == b.component && self.separation.none_counts(&a, &b) {
+            return;
+        }
+        if a == b {
+            if a.len() > 1 {
+                let (left, right) = a.halves();
+                self.compare(left, left);
+                self.compare(left, right);
+                self.compare(right, right);
+            }
+            return;
+        }
+        let ((middle_a, radius_a), (middle_b, radius_b)) = (self.ball(&a), self.ball(&b));
+        let touching = self.reach + radius_a + radius_b;
+        if middle_a.distance_squared(middle_b) >= touching * touching {
+        } else if a.len().max(b.len()) <= 2 {
+            self.compare_vertices(&a, &b);
+        } else if a.len() >= b.len() {
+            let (left, right) = a.halves();
+            self.compare(left, b);
+            self.compare(right, b);
+        } else {
+            let (left, right) = b.halves();
+            self.compare(a, left);
+            self.compare(a, right);
+        }
+    }
+
+    fn compare_vertices(&mut self, a: &Arc, b: &Arc) {
+        for i in a.first..=a.last {
+            for j in b.first..=b.last {
+                let squared = self.vertices[i].distance_squared(self.vertices[j]);
+                let counts =
+                    a.component != b.component || self.separation.counts(a.component, i, j);
+                if squared < self.reach * self.reach && counts {
+                    self.reach = self.reach.min((self.visit)(i, j, squared));
+                }
+            }
+        }
+    }
+}
+
+/// Arclength of each vertex from the start of its component.
+fn arclengths(curve: &Curve) -> Vec<f64> {
+    let mut arclengths = Vec::with_capacity(curve.n());
+    for c in 0..curve.components() {
+        let mut at = 0.;
+        arclengths.extend(curve.edge_lengths(c).map(|s| {
+            at += s;
+            at - s
+        }));
+    }
+    arclengths
+}
+
+fn cut_into_arcs(curve: &Curve, arclength: &[f64], longest: f64) -> Vec<Arc> {
+    let mut arcs = Vec::new();
+    for (component, range) in curve.ranges().enumerate() {
+        let mut first = range.start;
+        for i in range.clone() {
+            if i + 1 == range.end || arclength[i + 1] - arclength[first] > longest {
+                arcs.push(Arc { component, first, last: i });
+                first = i + 1;
+            }
+        }
+    }
+    arcs
+}
+
+/// Spatial hash of points: buckets chained through `next`, latest entry first.
+struct Grid {
+    cells: Vec<IVec3>,
+    heads: Vec<u32>,
+    next: Vec<u32>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Grid {
+    fn new<F: FnMut(usize, usize, f64) -> f64>(
+        arcs: &[Arc],
+        search: &Search<F>,
+        side: f64,
+    ) -> Self {
+        let middles: Vec<_> = arcs.iter().map(|a| search.ball(a).0).collect();
+        // Cells count from the corner of the curve's box, so that a far origin costs no digits.
+        let corner = middles.iter().fold(DVec3::INFINITY, |low, m| low.min(*m));
+        let cells = middles.iter().map(|m| ((m - corner) / side).floor().as_ivec3()).collect();
+        let mut grid = Self {
+            heads: vec![NONE; (2 * arcs.len()).next_power_of_two()],
+            next: vec![NONE; arcs.len()],
+            cells,
+        };
+        for k in 0..arcs.len() {
+            let bucket = grid.bucket(grid.cells[k]);
+            grid.next[k] = grid.heads[bucket];
+            grid.heads[bucket] = k as u32;
+        }
+        grid
+    }
+
+    fn bucket(&self, cell: IVec3) -> usize {
+        let hash = (cell.x as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            ^ (cell.y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f)
+            ^ (cell.z as u64).wrapping_mul(0x1656_67b1_9e37_79f9);
+        (hash >> 20) as usize & (self.heads.len() - 1)
+    }
+
+    /// Calls `visit` for entry `k` itself and each later one in the 27 cells around it.
+    fn for_each_near(&self, k: usize, mut visit: impl FnMut(usize)) {
+        for offset in 0..27 {
+            let step = IVec3::new(offset % 3 - 1, offset / 3 % 3 - 1, offset / 9 - 1);
+            let cell = self.cells[k] + step;
+            let mut l = self.heads[self.bucket(cell)];
+            // Entries are chained latest first, so the rest of a chain is earlier than k.
+            while l != NONE && l as usize >= k {
+                if self.cells[l as usize] == cell {
+                    visit(l as usize);
+                }
+                l = self.next[l as usize];
+            }
+        }
+    }
+}

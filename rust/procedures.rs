@@ -1,0 +1,96 @@
+//! EqualizeEdges, RemoveOverlaps and ControlCurvature: the three procedures of a SONO sweep.
+//!
+//! Baranska, Pieranski, Rawdon, "Ropelength of tight polygonal knots", section 3.1, with R = SR = 1.
+//! Each procedure visits its pairs one after the other and moves both vertices at once along the
+//! line between them, symmetrically (a Gauss-Seidel sweep), and returns the largest violation it
+//! met. RO's factor is printed as c_1 in the paper where c_2 is meant.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+/// Least index distance at which beads must not overlap: ceil(pi R_c/dl - 1).
+///
+/// The definition of SR has MinRad in place of R_c. ControlCurvature keeps MinRad >= R_c, so this
+/// is the stricter side: a rope that obeys it measures R_s = 1. (The paper's text on the simulation
+/// lets index distances up to ceil(pi MinRad/dl) overlap, two more than its definition of SR.)
+pub fn least_index_distance(dl: f64) -> usize {
+    (PI * (1. - 0.25 * dl * dl).max(0.).sqrt() / dl - 1.).ceil().max(1.) as usize
+}
+
+/// EE: brings each edge of one component closer to `dl`, by the share `c_1` at either end.
+/// Returns the largest |s_i - dl| met.
+///
+/// Every other edge first, then the ones between: these do not wait for each other, which is
+/// three times as fast as walking along the chain and converges alike.
+pub fn equalize_edges(v: &mut [DVec3], dl: f64, c_1: f64, odd_first: bool) -> f64 {
+    let n = v.len();
+    let mut worst = 0f64;
+    for parity in [odd_first as usize, 1 - odd_first as usize] {
+        for pair in v[parity..].chunks_exact_mut(2) {
+            let edge = pair[1] - pair[0];
+            let s = edge.length();
+            let shift = (c_1 * (dl - s) / s) * edge;
+            pair[0] -= shift;
+            pair[1] += shift;
+            worst = worst.max((dl - s).abs());
+        }
+    }
+    // Last the edge that closes the component.
+    let edge = v[0] - v[n - 1];
+    let s = edge.length();
+    let shift = (c_1 * (dl - s) / s) * edge;
+    v[n - 1] -= shift;
+    v[0] += shift;
+    worst.max((dl - s).abs())
+}
+
+/// RO: pushes overlapping beads apart to a distance of 2 + epsilon, by the share `c_2` each.
+/// Returns the largest overlap 2 - r_ij met.
+pub fn remove_overlaps(v: &mut [DVec3], pairs: &[(u32, u32)], c_2: f64, epsilon: f64) -> f64 {
+    let mut closest = 4f64;
+    for &(i, j) in pairs {
+        let (i, j) = (i as usize, j as usize);
+        let apart = v[j] - v[i];
+        let squared = apart.length_squared();
+        if squared < 4. {
+            closest = closest.min(squared);
+            let r = squared.sqrt();
+            let shift = (c_2 * (2. - r + epsilon) / r) * apart;
+            v[i] -= shift;
+            v[j] += shift;
+        }
+    }
+    2. - closest.sqrt()
+}
+
+/// CC: opens each corner of one component that turns by more than 2 arcsin(dl/2), moving its vertex
+/// inwards and the two beside it outwards, across the edges, so that these keep their lengths.
+/// Returns the largest 1 - R_i met, R_i = dl/(2 sin(theta_i/2)) being the paper's radius at which
+/// the disks on both sides of a bead become tangent.
+///
+/// With edges dl the second difference of the vertices is 2 dl sin(theta_i/2) long, so R_i >= 1
+/// where it is at most dl^2; a difference of the two edges enters it only squared.
+pub fn control_curvature(v: &mut [DVec3], dl: f64) -> f64 {
+    let n = v.len();
+    let most = dl * dl;
+    let mut worst = 0f64;
+    let mut open = |i: usize, j: usize, k: usize| {
+        let bend = (v[i] - v[j]) + (v[k] - v[j]);
+        let squared = bend.length_squared();
+        if squared > most * most {
+            let excess = 1. - most / squared.sqrt();
+            let shift = (excess / 6.) * bend;
+            v[i] -= shift;
+            v[j] += 2. * shift;
+            v[k] -= shift;
+            worst = worst.max(excess);
+        }
+    };
+    for j in 1..n - 1 {
+        open(j - 1, j, j + 1);
+    }
+    open(n - 2, n - 1, 0);
+    open(n - 1, 0, 1);
+    worst
+}

@@ -1,0 +1,224 @@
+//! The Python module `sono._core`: arrays in, arrays out, the interpreter released while Rust works.
+
+use std::time::Duration;
+
+use glam::DVec3;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::create_exception;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::{Curve, Error, Outcome, Stage, check_embedded};
+
+create_exception!(
+    sono,
+    CurveError,
+    PyValueError,
+    "A curve that cannot be used; its arguments are the message, the component and the vertex\n\
+     (both counted from 0, None where the error has no place)."
+);
+
+fn to_python(error: Error) -> PyErr {
+    let place = match error {
+        Error::TooFewVertices { component, .. } => (Some(component), None),
+        Error::NotFinite { component, vertex }
+        | Error::Coincident { component, vertex, .. }
+        | Error::SelfCrossing { component, vertex, .. } => (Some(component), Some(vertex)),
+        Error::Setting { .. } => return PyValueError::new_err(error.to_string()),
+        _ => (None, None),
+    };
+    CurveError::new_err((error.to_string(), place.0, place.1))
+}
+
+type Arrays<'py> = Vec<PyReadonlyArray2<'py, f64>>;
+
+fn curve(components: Arrays<'_>) -> PyResult<Curve> {
+    let component = |array: PyReadonlyArray2<'_, f64>| {
+        let array = array.as_array();
+        if array.ncols() != 3 {
+            return Err(PyValueError::new_err("a component must have the shape (n, 3)"));
+        }
+        Ok(array.rows().into_iter().map(|row| DVec3::new(row[0], row[1], row[2])).collect())
+    };
+    let components = components.into_iter().map(component).collect::<PyResult<_>>()?;
+    Curve::new(components).map_err(to_python)
+}
+
+fn arrays<'py>(py: Python<'py>, curve: &Curve) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+    (0..curve.components())
+        .map(|c| {
+            let v = curve.component(c);
+            let flat = v.iter().flat_map(DVec3::to_array).collect();
+            PyArray1::from_vec(py, flat).reshape([v.len(), 3])
+        })
+        .collect()
+}
+
+#[pyclass(frozen, get_all, module = "sono")]
+struct Measures {
+    n: usize,
+    components: usize,
+    dl: f64,
+    dispersion: f64,
+    min_rad: f64,
+    sr: f64,
+    r_s: f64,
+    r_c: Option<f64>,
+    length: f64,
+    inscribed_length: f64,
+    l_p: f64,
+    l_c: Option<f64>,
+    l_a: Option<f64>,
+}
+
+impl From<crate::Measures> for Measures {
+    fn from(m: crate::Measures) -> Self {
+        let crate::Measures {
+            n,
+            components,
+            dl,
+            dispersion,
+            min_rad,
+            sr,
+            r_s,
+            r_c,
+            length,
+            inscribed_length,
+            l_p,
+            l_c,
+            l_a,
+        } = m;
+        Self {
+            n,
+            components,
+            dl,
+            dispersion,
+            min_rad,
+            sr,
+            r_s,
+            r_c,
+            length,
+            inscribed_length,
+            l_p,
+            l_c,
+            l_a,
+        }
+    }
+}
+
+#[pyfunction]
+fn measure(py: Python<'_>, components: Arrays<'_>) -> PyResult<Measures> {
+    let curve = curve(components)?;
+    py.detach(|| check_embedded(&curve).map(|()| crate::measure(&curve).into())).map_err(to_python)
+}
+
+#[pyfunction]
+fn refine<'py>(
+    py: Python<'py>,
+    components: Arrays<'py>,
+    n: usize,
+) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+    let curve = curve(components)?;
+    let refined = py.detach(|| crate::refine(&curve, n, 0.25));
+    arrays(py, &refined)
+}
+
+#[pyfunction]
+fn default_settings() -> String {
+    serde_json::to_string(&crate::Settings::default()).expect("plain numbers")
+}
+
+#[pyclass(frozen, get_all, module = "sono._core")]
+struct Status {
+    outcome: &'static str,
+    stage: &'static str,
+    progress: f64,
+    sweeps: u64,
+    undone: u64,
+    epsilon: f64,
+    overlap: f64,
+    dispersion: f64,
+    best: Py<Measures>,
+}
+
+impl Status {
+    fn new(py: Python<'_>, status: &crate::Status) -> PyResult<Self> {
+        Ok(Self {
+            outcome: match status.outcome {
+                Outcome::Running => "running",
+                Outcome::Tight => "tight",
+                Outcome::Stuck => "stuck",
+            },
+            stage: match status.stage {
+                Stage::Collapse => "collapse",
+                Stage::Anneal => "anneal",
+                Stage::Settle => "settle",
+            },
+            progress: status.progress,
+            sweeps: status.sweeps,
+            undone: status.undone,
+            epsilon: status.epsilon,
+            overlap: status.met.overlap,
+            dispersion: status.met.dispersion,
+            best: Py::new(py, Measures::from(status.best))?,
+        })
+    }
+}
+
+#[pyclass(module = "sono._core")]
+struct Tightener(crate::Tightener);
+
+#[pymethods]
+impl Tightener {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        components: Arrays<'_>,
+        stage: &str,
+        n: usize,
+        settings: &str,
+    ) -> PyResult<Self> {
+        let curve = curve(components)?;
+        let settings = settings_from_json(settings)?;
+        py.detach(|| match stage {
+            "collapse" => crate::Tightener::collapse(&curve, settings),
+            "anneal" => crate::Tightener::anneal(&curve, n, settings),
+            _ => crate::Tightener::settle(&curve, n, settings),
+        })
+        .map(Self)
+        .map_err(to_python)
+    }
+
+    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
+        let budget = Duration::try_from_secs_f64(seconds)
+            .map_err(|e| PyValueError::new_err(e.to_string()))?;
+        let status = py.detach(|| self.0.advance(budget));
+        Status::new(py, &status)
+    }
+
+    fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+        arrays(py, self.0.best())
+    }
+
+    fn state(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| serde_json::to_string(&self.0))
+            .map_err(|e| PyValueError::new_err(e.to_string()))
+    }
+
+    #[staticmethod]
+    fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
+        py.detach(|| serde_json::from_str(state))
+            .map(Self)
+            .map_err(|e| PyValueError::new_err(format!("not a state of a Tightener: {e}")))
+    }
+}
+
+fn settings_from_json(settings: &str) -> PyResult<crate::Settings> {
+    serde_json::from_str(settings).map_err(|e| PyValueError::new_err(format!("settings: {e}")))
+}
+
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::{CurveError, Measures, Status, Tightener, default_settings, measure, refine};
+}

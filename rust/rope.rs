@@ -1,0 +1,194 @@
+//! The bead rope that a sweep acts on: vertices, required edge lengths, and the neighbour list.
+//!
+//! **No strand may pass another.** Beads closer than 2 + skin when the list was made are listed.
+//! Until the next list no bead leaves the ball of radius skin/2 about its place of that time
+//! (a step that leads out of it ends on its surface and a new list is made), so beads that are not
+//! listed never overlap, and in one sweep two strands approach by at most 2 skin. Two strands whose
+//! beads keep a distance d and whose edges are at most s long stay sqrt(d^2 - s^2/2) apart.
+//! [`Rope::sweep`] checks that this exceeds 2 skin at any time within the sweep; if not, the sweep
+//! is undone together with all that followed the last list, and the rope given more length.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::curve::Curve;
+use crate::measures::measure;
+use crate::neighbours::{Separation, for_each_close_pair};
+use crate::procedures::{control_curvature, equalize_edges, least_index_distance, remove_overlaps};
+
+/// The thickest skin of the neighbour list, hence twice the longest way of a bead in one sweep.
+const THICKEST_SKIN: f64 = 0.25;
+
+/// What a sweep met before it corrected it, R = 1.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Violation {
+    /// Largest overlap of two beads, 2 - r_ij.
+    pub overlap: f64,
+    /// Largest |s_i/dl - 1|.
+    pub dispersion: f64,
+    /// Largest 1 - dl/(2 sin(theta_i/2)).
+    pub curvature: f64,
+}
+
+impl Violation {
+    /// The largest of the three.
+    pub fn worst(&self) -> f64 {
+        self.overlap.max(self.dispersion).max(self.curvature)
+    }
+}
+
+/// A rope of radius 1 on a closed curve.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Rope {
+    curve: Curve,
+    /// Required edge length of each component.
+    dl: Vec<f64>,
+    pairs: Vec<(u32, u32)>,
+    /// Where the beads were when `pairs` was made.
+    reference: Vec<DVec3>,
+    skin: f64,
+    /// Sweeps since `pairs` was made.
+    age: usize,
+}
+
+impl Rope {
+    /// A rope on `curve`, scaled to R_s = 1, each component requiring its mean edge length.
+    pub fn new(mut curve: Curve) -> Self {
+        curve.scale(1. / measure(&curve).r_s);
+        let dl = (0..curve.components())
+            .map(|c| curve.component_length(c) / curve.range(c).len() as f64)
+            .collect();
+        let mut rope =
+            Self { curve, dl, pairs: vec![], reference: vec![], skin: 0.5 * THICKEST_SKIN, age: 0 };
+        rope.list_neighbours();
+        rope
+    }
+
+    /// The curve as it is; its overlaps are those of the last sweep.
+    pub fn curve(&self) -> &Curve {
+        &self.curve
+    }
+
+    /// Mean required edge length.
+    pub fn dl(&self) -> f64 {
+        self.length() / self.curve.n() as f64
+    }
+
+    /// Required length of all components together.
+    pub fn length(&self) -> f64 {
+        self.curve.ranges().zip(&self.dl).map(|(range, dl)| range.len() as f64 * dl).sum()
+    }
+
+    /// Multiplies the required edge lengths by `factor`.
+    pub fn stretch(&mut self, factor: f64) {
+        self.dl.iter_mut().for_each(|dl| *dl *= factor);
+    }
+
+    /// Moves each bead by `step(i)`, which must be well below 1 R.
+    pub fn displace(&mut self, mut step: impl FnMut() -> DVec3) {
+        self.curve.vertices_mut().iter_mut().for_each(|v| *v += step());
+        self.list_neighbours();
+    }
+
+    /// One EE, RO and CC pass. Returns the violations met, or `None` where the sweep was undone.
+    pub fn sweep(&mut self, c_1: f64, c_2: f64, epsilon: f64) -> Option<Violation> {
+        self.age += 1;
+        let mut met = Violation::default();
+        let mut longest_edge = 0f64;
+        for c in 0..self.dl.len() {
+            let (range, dl) = (self.curve.range(c), self.dl[c]);
+            let odd_first = self.age % 2 == 1;
+            let deviation = equalize_edges(self.share(range), dl, c_1, odd_first);
+            met.dispersion = met.dispersion.max(deviation / dl);
+            longest_edge = longest_edge.max(dl + deviation);
+        }
+        met.overlap = remove_overlaps(self.curve.vertices_mut(), &self.pairs, c_2, epsilon);
+        for c in 0..self.dl.len() {
+            let (range, dl) = (self.curve.range(c), self.dl[c]);
+            met.curvature = met.curvature.max(control_curvature(self.share(range), dl));
+        }
+        if strands_stay_apart(met.overlap, longest_edge, self.skin) {
+            self.follow_motion();
+            Some(met)
+        } else {
+            self.undo();
+            None
+        }
+    }
+
+    /// Lets all components pull with the same tension, the mean of s_i - dl.
+    ///
+    /// EE moves a vertex by c_1 (s_i - dl), so this difference is the force along the rope.
+    pub fn share_tension(&mut self) {
+        let tension: Vec<_> = (0..self.dl.len())
+            .map(|c| self.curve.component_length(c) / self.curve.range(c).len() as f64 - self.dl[c])
+            .collect();
+        let mean = self.curve.ranges().zip(&tension).map(|(r, t)| r.len() as f64 * t).sum::<f64>()
+            / self.curve.n() as f64;
+        for (dl, t) in self.dl.iter_mut().zip(tension) {
+            *dl += 0.1 * (t - mean);
+        }
+    }
+
+    fn share(&mut self, range: Range<usize>) -> &mut [DVec3] {
+        &mut self.curve.vertices_mut()[range]
+    }
+
+    /// Keeps the beads where the neighbour list is valid and the list as short as it can be.
+    fn follow_motion(&mut self) {
+        let furthest = self
+            .curve
+            .vertices()
+            .iter()
+            .zip(&self.reference)
+            .fold(0., |furthest: f64, (v, r)| furthest.max(v.distance_squared(*r)))
+            .sqrt();
+        // A skin of three times the way covered in 100 sweeps lasts for about 150.
+        let wanted = (300. * furthest / self.age as f64).clamp(1e-7, THICKEST_SKIN);
+        let out = furthest > 0.5 * self.skin;
+        if out {
+            self.pull_back(0.5 * self.skin);
+        }
+        if out || (self.age.is_multiple_of(100) && wanted < 0.7 * self.skin) {
+            self.skin = wanted;
+            self.list_neighbours();
+        }
+    }
+
+    fn pull_back(&mut self, furthest: f64) {
+        for (v, r) in self.curve.vertices_mut().iter_mut().zip(&self.reference) {
+            *v = *r + (*v - *r).clamp_length_max(furthest);
+        }
+    }
+
+    fn undo(&mut self) {
+        self.curve.vertices_mut().copy_from_slice(&self.reference);
+        self.stretch(1.01);
+        self.skin *= 0.5;
+        self.list_neighbours();
+    }
+
+    fn list_neighbours(&mut self) {
+        let least: Vec<_> = self.dl.iter().map(|&dl| least_index_distance(dl)).collect();
+        let separation = Separation::by_index(&self.curve, &least);
+        let reach = 2. + self.skin;
+        let pairs = &mut self.pairs;
+        pairs.clear();
+        for_each_close_pair(&self.curve, &separation, reach, |i, j, _| {
+            pairs.push((i as u32, j as u32));
+            reach
+        });
+        pairs.sort_unstable();
+        self.reference.clear();
+        self.reference.extend_from_slice(self.curve.vertices());
+        self.age = 0;
+    }
+}
+
+/// Whether no strand can pass another while beads overlap by at most `overlap` on their way.
+fn strands_stay_apart(overlap: f64, longest_edge: f64, skin: f64) -> bool {
+    let beads = 2. - overlap - 2. * skin;
+    beads > 0. && beads * beads - 0.5 * longest_edge * longest_edge > 4. * skin * skin
+}

@@ -1,0 +1,325 @@
+//! SONO, "Shrink On No Overlaps": the tightening loop.
+//!
+//! Baranska, Pieranski, Rawdon, "Ropelength of tight polygonal knots", section 3.2; first described
+//! in P. Pieranski, "In search of ideal knots" (1998). A sweep is EE, RO, CC. After it the required
+//! edge length dl shrinks if the violations met are below the tolerance of the moment, and grows a
+//! little if they are above twice that. What the paper leaves to the experimenter who watches and
+//! adjusts is done here in three stages, each a [`Tightener`] of its own:
+//!
+//! 1. [`Stage::Collapse`] shortens a loose rope at a fixed rate and tolerance until it jams. Its
+//!    edges are at most about half a radius long, whatever n is wanted in the end, so that no
+//!    strand fits between beads; beads are taken out as the rope gets shorter.
+//! 2. [`Stage::Anneal`] at a coarse n lowers the tolerance, and epsilon with it, geometrically from
+//!    large: beads that may overlap a lot still rearrange, and the rope leaves local minima.
+//! 3. [`Stage::Settle`] goes on at any n until dispersion and overlaps are below 1e-6.
+//!
+//! ```
+//! use sono::{Curve, Outcome, Settings, Stage, Tightener, measure};
+//! use glam::DVec3;
+//! let trefoil = (0..60).map(|i| {
+//!     let t = std::f64::consts::TAU * i as f64 / 60.;
+//!     let r = 2. + 0.8 * (3. * t).cos();
+//!     DVec3::new(r * (2. * t).cos(), r * (2. * t).sin(), 0.8 * (3. * t).sin())
+//! });
+//! let curve = Curve::new(vec![trefoil.collect()])?;
+//! let settings = Settings { anneal_sweeps: 20_000, ..Default::default() };
+//! let mut loose = Tightener::collapse(&curve, settings)?;
+//! while loose.step() == Outcome::Running {}
+//! let mut tight = Tightener::anneal(&loose.best(), 60, settings)?;
+//! while tight.step() == Outcome::Running {}
+//! assert!(measure(&tight.best()).l_p < 33.);
+//! # Ok::<(), sono::Error>(())
+//! ```
+
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
+
+use crate::curve::Curve;
+use crate::error::{Error, Result};
+use crate::inscribed::{refine, rope_curve};
+use crate::measures::{Measures, measure};
+use crate::procedures::least_index_distance;
+use crate::rope::{Rope, Violation};
+use crate::settings::Settings;
+
+/// Tolerance while collapsing, and at the end of the anneal.
+const COLLAPSED: f64 = 0.3;
+const ANNEALED: f64 = 3e-3;
+/// Share of its length that a collapsing rope loses in a sweep.
+const COLLAPSE_RATE: f64 = 3e-3;
+/// A rope has jammed when it loses less than this share of its length in so many sweeps.
+const JAMMED: f64 = 2e-3;
+const JAM_SWEEPS: u64 = 2000;
+/// Edge length below which a collapsing rope gives up beads, and the one it then has.
+const TOO_FINE: f64 = 0.35;
+const LOOSE: f64 = 0.5;
+/// Sweeps between two looks at what the rope measures.
+const BURST: u64 = 1000;
+
+/// Which part of the tightening a [`Tightener`] does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// From any embedded curve to a jammed rope.
+    Collapse,
+    /// Lowers the tolerance from large to small.
+    Anneal,
+    /// Ends with dispersion and overlaps below the final tolerance.
+    Settle,
+}
+
+/// Whether a [`Tightener`] is done. Not getting there is no error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Go on.
+    Running,
+    /// The stage has done what it is for.
+    Tight,
+    /// The final tolerance is out of reach; the best state so far is all there is.
+    Stuck,
+}
+
+/// Where a [`Tightener`] stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Status {
+    /// Whether it is done.
+    pub outcome: Outcome,
+    /// Which stage this is.
+    pub stage: Stage,
+    /// Share of the planned sweeps done; 0 while collapsing.
+    pub progress: f64,
+    /// Sweeps done.
+    pub sweeps: u64,
+    /// Sweeps undone because a strand might have passed another.
+    pub undone: u64,
+    /// The overshoot of RO at this moment.
+    pub epsilon: f64,
+    /// What the last sweep met.
+    pub met: Violation,
+    /// Measures of the best state so far, R_s = 1.
+    pub best: Measures,
+}
+
+/// The best state so far: valid ones before others, then the shorter bound L_c.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Best {
+    curve: Curve,
+    valid: bool,
+    l_c: f64,
+}
+
+/// Tightens a rope, stage by stage; everything needed to go on later is serialised with it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Tightener {
+    settings: Settings,
+    stage: Stage,
+    rope: Rope,
+    sweeps: u64,
+    planned: u64,
+    first_tolerance: f64,
+    undone: u64,
+    met: Violation,
+    outcome: Outcome,
+    best: Best,
+    /// Length at the last look for a jam.
+    length: f64,
+}
+
+impl Tightener {
+    /// Collapses any embedded curve of any scale; the number of vertices is chosen by itself.
+    ///
+    /// # Errors
+    /// [`Error::Setting`], [`Error::SelfCrossing`], [`Error::TooThin`].
+    pub fn collapse(curve: &Curve, settings: Settings) -> Result<Self> {
+        settings.check()?;
+        let mut rope = Rope::new(rope_curve(curve)?);
+        jitter(&mut rope, 0.02, settings.seed);
+        Ok(Self::new(rope, Stage::Collapse, u64::MAX, COLLAPSED, settings))
+    }
+
+    /// Anneals a rope on `n` vertices in all; `curve` must be one: see [`Tightener::collapse`].
+    ///
+    /// # Errors
+    /// [`Error::Setting`], [`Error::TooCoarse`].
+    pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
+        let mut rope = resampled(curve, n, settings)?;
+        jitter(&mut rope, 0.05, settings.seed);
+        let planned = settings.anneal_sweeps.into();
+        Ok(Self::new(rope, Stage::Anneal, planned, settings.anneal_tolerance, settings))
+    }
+
+    /// Settles a rope on `n` vertices in all, starting at a tolerance of a coarser one's roughness.
+    ///
+    /// # Errors
+    /// [`Error::Setting`], [`Error::TooCoarse`].
+    pub fn settle(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
+        let rope = resampled(curve, n, settings)?;
+        let tolerance = 0.3 * rope.dl().min(1.).powi(2);
+        let planned = n as u64 * u64::from(settings.settle_sweeps);
+        Ok(Self::new(rope, Stage::Settle, planned, tolerance, settings))
+    }
+
+    fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
+        let best = Best { curve: rope.curve().clone(), valid: false, l_c: f64::INFINITY };
+        let length = rope.length();
+        let mut tightener = Self {
+            settings,
+            stage,
+            rope,
+            sweeps: 0,
+            planned,
+            first_tolerance: tolerance,
+            undone: 0,
+            met: Violation::default(),
+            outcome: Outcome::Running,
+            best,
+            length,
+        };
+        tightener.keep_best();
+        tightener
+    }
+
+    /// Works for about `budget`, unless done before.
+    pub fn advance(&mut self, budget: Duration) -> Status {
+        let start = Instant::now();
+        while self.outcome == Outcome::Running && start.elapsed() < budget {
+            for _ in 0..50 {
+                self.step();
+            }
+        }
+        self.status()
+    }
+
+    /// One sweep, and what follows from it.
+    pub fn step(&mut self) -> Outcome {
+        if self.outcome != Outcome::Running {
+            return self.outcome;
+        }
+        let tolerance = self.tolerance();
+        let Settings { c_1, c_2, .. } = self.settings;
+        match self.rope.sweep(c_1, c_2, 0.5 * tolerance) {
+            Some(met) => {
+                self.met = met;
+                self.shrink_on_no_overlaps(tolerance);
+            }
+            None => self.undone += 1,
+        }
+        self.sweeps += 1;
+        if self.sweeps.is_multiple_of(10) {
+            self.rope.share_tension();
+        }
+        if self.stage == Stage::Collapse {
+            self.thin_out();
+        }
+        if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
+            let valid = self.keep_best();
+            self.outcome = self.judge(valid);
+        }
+        self.outcome
+    }
+
+    fn shrink_on_no_overlaps(&mut self, tolerance: f64) {
+        let rate = match self.stage {
+            Stage::Collapse => COLLAPSE_RATE,
+            _ => tolerance / 300.,
+        };
+        if self.met.worst() < tolerance {
+            self.rope.stretch(1. - rate);
+        } else if self.met.worst() > 2. * tolerance {
+            self.rope.stretch(1. + 0.3 * rate);
+        }
+    }
+
+    /// The violation tolerated at this moment.
+    fn tolerance(&self) -> f64 {
+        let last = match self.stage {
+            Stage::Collapse => self.first_tolerance,
+            Stage::Anneal => ANNEALED.min(self.first_tolerance),
+            Stage::Settle => 0.5 * self.settings.tolerance,
+        };
+        self.first_tolerance * (last / self.first_tolerance).powf(self.progress())
+    }
+
+    fn progress(&self) -> f64 {
+        (self.sweeps as f64 / self.planned as f64).min(1.)
+    }
+
+    /// Takes beads out of a collapsing rope whose edges have become short.
+    fn thin_out(&mut self) {
+        if self.rope.dl() < TOO_FINE {
+            let n = (self.rope.length() / LOOSE) as usize;
+            self.rope = Rope::new(refine(self.rope.curve(), n, 0.25));
+        }
+    }
+
+    fn judge(&mut self, valid: bool) -> Outcome {
+        match self.stage {
+            Stage::Collapse if self.sweeps.is_multiple_of(JAM_SWEEPS) => {
+                let before = std::mem::replace(&mut self.length, self.rope.length());
+                if self.length > (1. - JAMMED) * before { Outcome::Tight } else { Outcome::Running }
+            }
+            Stage::Anneal if self.sweeps >= self.planned => Outcome::Tight,
+            Stage::Settle if self.sweeps >= self.planned && valid => Outcome::Tight,
+            Stage::Settle if self.sweeps >= 2 * self.planned => Outcome::Stuck,
+            _ => Outcome::Running,
+        }
+    }
+
+    /// Remembers the rope as it is if it is better than what was; returns whether it is valid.
+    fn keep_best(&mut self) -> bool {
+        let now = measure(self.rope.curve());
+        let valid = now.dispersion.max(1. - now.r_s) <= self.settings.tolerance;
+        let l_c = now.l_c.unwrap_or(f64::INFINITY);
+        if (!valid, l_c) < (!self.best.valid, self.best.l_c) {
+            self.best = Best { curve: self.rope.curve().clone(), valid, l_c };
+            self.best.curve.scale(1. / now.r_s);
+            self.best.curve.centre();
+        }
+        valid
+    }
+
+    /// The best state so far, its R_s = 1, its centre at the origin.
+    pub fn best(&self) -> &Curve {
+        &self.best.curve
+    }
+
+    /// Where it stands.
+    pub fn status(&self) -> Status {
+        Status {
+            outcome: self.outcome,
+            stage: self.stage,
+            progress: self.progress(),
+            sweeps: self.sweeps,
+            undone: self.undone,
+            epsilon: 0.5 * self.tolerance(),
+            met: self.met,
+            best: measure(&self.best.curve),
+        }
+    }
+}
+
+fn resampled(curve: &Curve, n: usize, settings: Settings) -> Result<Rope> {
+    settings.check()?;
+    let shift = Pcg64Mcg::seed_from_u64(settings.seed).random();
+    let same = curve.n() == n;
+    let rope = Rope::new(if same { curve.clone() } else { refine(curve, n, shift) });
+    let dl = rope.dl();
+    // At index distance 1 neighbouring beads would have to be 2 R apart.
+    if least_index_distance(dl) < 2 {
+        let needed = (rope.length() / 1.2) as usize + 1;
+        return Err(Error::TooCoarse { n, dl, needed });
+    }
+    Ok(rope)
+}
+
+/// Breaks symmetries, which SONO would keep, and makes the seed count.
+fn jitter(rope: &mut Rope, size: f64, seed: u64) {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut coordinate = || rng.random_range(-size..size);
+    rope.displace(|| DVec3::new(coordinate(), coordinate(), coordinate()));
+}
