@@ -8,6 +8,7 @@ use glam::DVec3;
 use crate::curve::Curve;
 use crate::error::{Error, Result};
 use crate::neighbours::{Separation, for_each_close_pair};
+use crate::segments::distance;
 
 /// Two edges count as meeting when they come closer than this share of the curve's mean edge.
 const TOUCHING: f64 = 1e-9;
@@ -69,7 +70,7 @@ fn edges_meet(curve: &Curve, i: usize, j: usize, touching: f64) -> bool {
             let across = back.cross(onward).length();
             back.dot(onward) > 0. && across <= touching * back.length().max(onward.length())
         }
-        _ => segment_distance(a, b) <= touching,
+        _ => distance(a, b) <= touching,
     }
 }
 
@@ -77,26 +78,6 @@ fn edge(curve: &Curve, i: usize) -> [DVec3; 2] {
     let range = curve.range(curve.component_of(i));
     let next = if i + 1 == range.end { range.start } else { i + 1 };
     [curve.vertices()[i], curve.vertices()[next]]
-}
-
-/// Distance of two segments: between inner points if those are closest, else from an end.
-fn segment_distance(a: [DVec3; 2], b: [DVec3; 2]) -> f64 {
-    let (u, v, w) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
-    let normal = u.cross(v);
-    let squared = normal.length_squared();
-    if squared > 0. {
-        let s = v.cross(w).dot(normal) / squared;
-        let t = u.cross(w).dot(normal) / squared;
-        if (0. ..=1.).contains(&s) && (0. ..=1.).contains(&t) {
-            return w.dot(normal).abs() / squared.sqrt();
-        }
-    }
-    let to_segment = |p: DVec3, q: [DVec3; 2]| {
-        let along = q[1] - q[0];
-        let t = ((p - q[0]).dot(along) / along.length_squared()).clamp(0., 1.);
-        p.distance(q[0] + t * along)
-    };
-    to_segment(a[0], b).min(to_segment(a[1], b)).min(to_segment(b[0], a)).min(to_segment(b[1], a))
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ use crate::embedded::check_embedded;
 use crate::error::{Error, Result};
 use crate::measures::measure;
 use crate::neighbours::{Separation, for_each_close_pair};
+use crate::segments;
 
 /// The inscribed knot of a curve, all components.
 pub struct Inscribed {
@@ -176,7 +177,8 @@ fn clearances(curve: &Curve) -> Vec<f64> {
         for (i, j) in [(i, j), (j, i)] {
             for (from, to) in edges_at(curve, j) {
                 if from != i && to != i {
-                    let d = distance_to_edge(curve.vertices(), i, from, to);
+                    let v = curve.vertices();
+                    let d = segments::to_point([v[from], v[to]], v[i]);
                     clearances[i] = clearances[i].min(d);
                 }
             }
@@ -191,12 +193,6 @@ fn edges_at(curve: &Curve, i: usize) -> [(usize, usize); 2] {
     let next = if i + 1 == end { start } else { i + 1 };
     let prev = if i == start { end - 1 } else { i - 1 };
     [(prev, i), (i, next)]
-}
-
-fn distance_to_edge(v: &[DVec3], i: usize, from: usize, to: usize) -> f64 {
-    let edge = v[to] - v[from];
-    let along = ((v[i] - v[from]).dot(edge) / edge.length_squared()).clamp(0., 1.);
-    v[i].distance(v[from] + along * edge)
 }
 
 fn pieces(v: &[DVec3], tangents: &[f64]) -> Vec<Piece> {

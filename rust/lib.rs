@@ -2,7 +2,7 @@
 //!
 //! **Curve -> measures** is one road, **curve -> rope -> sweeps of SONO -> tight curve** the other.
 //! Dependencies point one way only:
-//! `error, curve <- neighbours <- measures <- inscribed, embedded, procedures <- rope <- tighten
+//! `error, segments, curve <- neighbours <- measures <- inscribed, embedded, procedures <- rope <- tighten
 //! <- python`.
 
 pub mod curve;
@@ -15,6 +15,7 @@ pub mod procedures;
 #[cfg(feature = "python")]
 mod python;
 pub mod rope;
+pub mod segments;
 pub mod settings;
 pub mod tighten;
 

@@ -6,6 +6,8 @@
 //!
 //! - An arc of length S lies in the ball of radius S/2 about the midpoint m of its ends, because
 //!   for each of its points |p - m| <= (|p - a| + |p - b|)/2 <= S/2.
+//! - It also lies within sqrt(S^2 - c^2)/2 of its chord of length c. For a smooth arc that is
+//!   second order in S, so along a line of contact few pairs of arcs are left at each halving.
 //! - Two arcs that come closer than `reach` therefore have midpoints closer than
 //!   reach + (S + S')/2 <= reach + longest arc =: side of a cell, so they are found in the same or
 //!   in touching cells.
@@ -24,6 +26,7 @@
 use glam::{DVec3, IVec3};
 
 use crate::curve::Curve;
+use crate::segments;
 
 /// How far apart along the curve two vertices must be to count as a pair: by arclength (the
 /// measures) or by index distance (the engines). Vertices of different components always count.
@@ -54,7 +57,13 @@ impl Separation {
         }
     }
 
-    fn counts(&self, c: usize, i: usize, j: usize) -> bool {
+    /// Whether `i` < `j` count as a pair.
+    fn counts(&self, curve: &Curve, i: usize, j: usize) -> bool {
+        let c = curve.component_of(i);
+        c != curve.component_of(j) || self.counts_within(c, i, j)
+    }
+
+    fn counts_within(&self, c: usize, i: usize, j: usize) -> bool {
         let forth = self.position[j] - self.position[i];
         forth.min(self.around[c] - forth) >= self.least[c]
     }
@@ -106,18 +115,29 @@ pub fn for_each_close_pair(
 
 /// The pair that counts and is closest, as (i, j, distance); `None` where no pair counts.
 pub fn closest_pair(curve: &Curve, separation: &Separation) -> Option<(usize, usize, f64)> {
-    let mut reach = 2. * curve.length() / curve.n() as f64;
-    loop {
-        let mut closest = None;
-        for_each_close_pair(curve, separation, reach, |i, j, squared| {
-            closest = Some((i, j, squared.sqrt()));
-            squared.sqrt()
-        });
-        if closest.is_some() || reach > curve.length() {
-            return closest;
+    let mut closest = None;
+    // A little more than the distance of some pair, so that pair itself is found if it is closest.
+    let reach = 1.01 * some_distance(curve, separation);
+    for_each_close_pair(curve, separation, reach, |i, j, squared| {
+        closest = Some((i, j, squared.sqrt()));
+        squared.sqrt()
+    });
+    closest
+}
+
+/// The least distance among pairs of about a hundred vertices; where none counts, the curve's length.
+fn some_distance(curve: &Curve, separation: &Separation) -> f64 {
+    let few: Vec<_> = (0..curve.n()).step_by(curve.n().div_ceil(100)).collect();
+    let mut least = curve.length();
+    for (k, &i) in few.iter().enumerate() {
+        for &j in &few[k + 1..] {
+            let distance = curve.vertices()[i].distance(curve.vertices()[j]);
+            if distance < least && separation.counts(curve, i, j) {
+                least = distance;
+            }
         }
-        reach *= 2.;
     }
+    least
 }
 
 struct Search<'a, F> {
@@ -129,9 +149,32 @@ struct Search<'a, F> {
 }
 
 impl<F: FnMut(usize, usize, f64) -> f64> Search<'_, F> {
-    fn ball(&self, arc: &Arc) -> (DVec3, f64) {
-        let middle = 0.5 * (self.vertices[arc.first] + self.vertices[arc.last]);
-        (middle, 0.5 * (self.arclength[arc.last] - self.arclength[arc.first]))
+    fn ends(&self, arc: &Arc) -> [DVec3; 2] {
+        [self.vertices[arc.first], self.vertices[arc.last]]
+    }
+
+    fn arclength(&self, arc: &Arc) -> f64 {
+        self.arclength[arc.last] - self.arclength[arc.first]
+    }
+
+    fn middle(&self, arc: &Arc) -> DVec3 {
+        let [from, to] = self.ends(arc);
+        0.5 * (from + to)
+    }
+
+    /// How far an arc gets from its chord at most: half the small axis of the ellipsoid of points
+    /// whose distances to its ends add up to its length.
+    fn bulge(&self, arc: &Arc) -> f64 {
+        let [from, to] = self.ends(arc);
+        let squared = self.arclength(arc).powi(2) - from.distance_squared(to);
+        0.5 * squared.max(0.).sqrt()
+    }
+
+    fn may_come_close(&self, a: &Arc, b: &Arc) -> bool {
+        let balls = self.reach + 0.5 * (self.arclength(a) + self.arclength(b));
+        self.middle(a).distance_squared(self.middle(b)) < balls * balls
+            && segments::distance(self.ends(a), self.ends(b))
+                < self.reach + self.bulge(a) + self.bulge(b)
     }
 
     /// Visits the close pairs of two arcs, `a` not after `b`.
@@ -146,21 +189,18 @@ impl<F: FnMut(usize, usize, f64) -> f64> Search<'_, F> {
                 self.compare(left, right);
                 self.compare(right, right);
             }
-            return;
-        }
-        let ((middle_a, radius_a), (middle_b, radius_b)) = (self.ball(&a), self.ball(&b));
-        let touching = self.reach + radius_a + radius_b;
-        if middle_a.distance_squared(middle_b) >= touching * touching {
         } else if a.len().max(b.len()) <= 2 {
             self.compare_vertices(&a, &b);
-        } else if a.len() >= b.len() {
-            let (left, right) = a.halves();
-            self.compare(left, b);
-            self.compare(right, b);
-        } else {
-            let (left, right) = b.halves();
-            self.compare(a, left);
-            self.compare(a, right);
+        } else if self.may_come_close(&a, &b) {
+            if a.len() >= b.len() {
+                let (left, right) = a.halves();
+                self.compare(left, b);
+                self.compare(right, b);
+            } else {
+                let (left, right) = b.halves();
+                self.compare(a, left);
+                self.compare(a, right);
+            }
         }
     }
 
@@ -169,7 +209,7 @@ impl<F: FnMut(usize, usize, f64) -> f64> Search<'_, F> {
             for j in b.first..=b.last {
                 let squared = self.vertices[i].distance_squared(self.vertices[j]);
                 let counts =
-                    a.component != b.component || self.separation.counts(a.component, i, j);
+                    a.component != b.component || self.separation.counts_within(a.component, i, j);
                 if squared < self.reach * self.reach && counts {
                     self.reach = self.reach.min((self.visit)(i, j, squared));
                 }
@@ -220,7 +260,7 @@ impl Grid {
         search: &Search<F>,
         side: f64,
     ) -> Self {
-        let middles: Vec<_> = arcs.iter().map(|a| search.ball(a).0).collect();
+        let middles: Vec<_> = arcs.iter().map(|a| search.middle(a)).collect();
         // Cells count from the corner of the curve's box, so that a far origin costs no digits.
         let corner = middles.iter().fold(DVec3::INFINITY, |low, m| low.min(*m));
         let cells = middles.iter().map(|m| ((m - corner) / side).floor().as_ivec3()).collect();

@@ -21,6 +21,11 @@ use crate::procedures::{control_curvature, equalize_edges, least_index_distance,
 /// The thickest skin of the neighbour list, hence twice the longest way of a bead in one sweep.
 const THICKEST_SKIN: f64 = 0.25;
 
+/// A list that lasts fewer sweeps gets a thicker skin, any other a thinner one; the thinner the skin
+/// the shorter the list. One that lasts so long is made anew to learn whether a thinner one will do.
+const SHORT_LIFE: usize = 60;
+const LONG_LIFE: usize = 200;
+
 /// What a sweep met before it corrected it, R = 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Violation {
@@ -57,11 +62,12 @@ impl Rope {
     /// A rope on `curve`, scaled to R_s = 1, each component requiring its mean edge length.
     pub fn new(mut curve: Curve) -> Self {
         curve.scale(1. / measure(&curve).r_s);
-        let dl = (0..curve.components())
+        let dl: Vec<f64> = (0..curve.components())
             .map(|c| curve.component_length(c) / curve.range(c).len() as f64)
             .collect();
-        let mut rope =
-            Self { curve, dl, pairs: vec![], reference: vec![], skin: 0.5 * THICKEST_SKIN, age: 0 };
+        let longest = dl.iter().copied().fold(0., f64::max);
+        let skin = (longest * longest).min(0.5 * THICKEST_SKIN);
+        let mut rope = Self { curve, dl, pairs: vec![], reference: vec![], skin, age: 0 };
         rope.list_neighbours();
         rope
     }
@@ -145,14 +151,13 @@ impl Rope {
             .zip(&self.reference)
             .fold(0., |furthest: f64, (v, r)| furthest.max(v.distance_squared(*r)))
             .sqrt();
-        // A skin of three times the way covered in 100 sweeps lasts for about 150.
-        let wanted = (300. * furthest / self.age as f64).clamp(1e-7, THICKEST_SKIN);
         let out = furthest > 0.5 * self.skin;
         if out {
             self.pull_back(0.5 * self.skin);
         }
-        if out || (self.age.is_multiple_of(100) && wanted < 0.7 * self.skin) {
-            self.skin = wanted;
+        if out || self.age == LONG_LIFE {
+            let factor = if self.age < SHORT_LIFE { 1.5 } else { 0.8 };
+            self.skin = (self.skin * factor).min(THICKEST_SKIN);
             self.list_neighbours();
         }
     }

@@ -1,0 +1,269 @@
+"""One file of a batch: read, tighten, write each result as it is ready, keep the rest when stopped."""
+
+import hashlib
+import json
+import math
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from itertools import chain, count
+from pathlib import Path
+from typing import Any
+
+from sono import formats
+from sono._core import CurveError, Measures
+from sono.formats import FormatError, VertexFile
+from sono.pipeline import Progress, Run, Stopped, Tight, default_settings, measure
+from sono.tables import Row
+
+SAVE_EVERY = 10.0
+"""Seconds between two checkpoints."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """Tighten the curve in `source` ("-" is standard input) at each n of `outputs`.
+
+    `name` is the curve's name in tables. `outputs` says where the vertices for each n go; "-" is standard
+    output. `time_limit` is in seconds. `checkpoint` is the file that keeps the state of the run. With
+    `resume` a run goes on from its checkpoint, and outputs that are there are not computed again.
+    """
+
+    source: str
+    name: str
+    outputs: dict[int, str]
+    settings: dict[str, Any]
+    time_limit: float | None = None
+    checkpoint: Path | None = None
+    resume: bool = False
+
+    def files(self) -> list[str]:
+        """Return the files that the job writes."""
+        outputs = [output for output in self.outputs.values() if not _is_stream(output)]
+        return [*outputs, os.fspath(self.checkpoint)] if self.checkpoint else outputs
+
+
+@dataclass(frozen=True)
+class Result:
+    """A row of the table, if there is one, and what the user should hear.
+
+    `trouble` is None if all that was asked for was done.
+    """
+
+    row: Row | None
+    trouble: str | None = None
+
+
+def measured(source: str) -> tuple[VertexFile, Measures]:
+    """Read and measure a curve file. Raises `FormatError` naming file and line."""
+    file = formats.read(source)
+    try:
+        return file, measure(file.components)
+    except CurveError as error:
+        raise _located(error, file) from error
+
+
+def as_row(name: str, file: str | None, measures: Measures, **more: Any) -> Row:
+    """Make a row of the table."""
+    keys = (key for key in dir(measures) if not key.startswith("_"))
+    return {"knot": name, "file": file, **{key: getattr(measures, key) for key in keys}, **more}
+
+
+def run(job: Job, watch: Callable[[Progress], None]) -> Iterator[Result]:
+    """Do a job, giving each row when its vertices are on the disk; `watch` may raise `Stopped`."""
+    try:
+        file = formats.read(job.source)
+        kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
+        for n in kept:
+            yield _kept(job, n)
+        if todo := set(job.outputs) - set(kept):
+            yield from _Task(job, file, todo).results(watch)
+    except FormatError as error:
+        yield Result(None, str(error))
+
+
+def _kept(job: Job, n: int) -> Result:
+    """Give the row of an output that is there from an earlier run."""
+    output = job.outputs[n]
+    try:
+        measures = measured(output)[1]
+    except FormatError as error:
+        return Result(None, str(error))
+    if measures.n != n:
+        return Result(None, f"{output}: has {measures.n} vertices, not n = {n}; move it away")
+    tight = max(measures.dispersion, abs(1 - measures.r_s)) <= _tolerance(job)
+    return _judged(job, _rope_row(job, output, measures, "tight" if tight else "stuck"))
+
+
+class _Task:
+    """A job under way: its run, and the checkpoint that keeps it."""
+
+    def __init__(self, job: Job, file: VertexFile, todo: set[int]) -> None:
+        """Begin, or go on from the checkpoint. Raises `FormatError`."""
+        self.job = job
+        self.file = file
+        self.todo = todo
+        self.identity = _identity(job, file)
+        self.run = self.restored() or self.begun()
+        self.end = time.monotonic() + (job.time_limit or math.inf)
+        # At once, so that a checkpoint that cannot be written is noticed before hours are spent.
+        self.save()
+
+    def results(self, watch: Callable[[Progress], None]) -> Iterator[Result]:
+        """Tighten at each n in turn. Raises `FormatError` if the curve cannot be tightened at all."""
+        while self.run.targets:
+            n = self.run.targets[0]
+            try:
+                tight = self.run.tighten(partial(self.look, watch))
+            except Stopped as stopped:
+                yield self.stopped(str(stopped))
+                return
+            except CurveError as error:
+                trouble = _located(error, self.file)
+                if self.run.loose is None:
+                    raise trouble from error
+                yield Result(None, str(trouble))
+            else:
+                if n in self.todo:
+                    status = "tight" if tight.converged else "stuck"
+                    row, unwritten = self.deliver(self.job.outputs[n], tight, status)
+                    if unwritten:
+                        yield Result(row, unwritten + self.way_on())
+                        return
+                    yield _judged(self.job, row)
+            self.run.next_target()
+        if self.job.checkpoint:
+            self.job.checkpoint.unlink(missing_ok=True)
+
+    def look(self, watch: Callable[[Progress], None], progress: Progress) -> None:
+        """Between two slices: show, stop or save the run."""
+        watch(progress)
+        now = time.monotonic()
+        if now > self.end:
+            raise Stopped(f"the time limit of {self.job.time_limit:g} s was reached")
+        if now > self.saved + SAVE_EVERY:
+            with suppress(FormatError):  # a full disk may have room again before the run is stopped
+                self.save()
+
+    def stopped(self, why: str) -> Result:
+        """Write the best state of the run."""
+        best = self.run.best()
+        output = _free_name(self.job.outputs[self.run.targets[0]])
+        row, unwritten = self.deliver(output, best, "stopped")
+        place = unwritten or f"the best state so far, n = {best.measures.n}, is in {output}"
+        return Result(row, f"{self.job.name}: {why}; {place}{self.way_on()}")
+
+    def deliver(self, output: str, tight: Tight, status: str) -> tuple[Row, str | None]:
+        """Write vertices and measure what was written; if that fails, say why, and measure what there is."""
+        measures, unwritten = tight.measures, None
+        try:
+            formats.write(output, tight.curve, _header(self.job, tight, status))
+            if not _is_stream(output):
+                measures = measured(output)[1]
+        except FormatError as error:
+            unwritten = str(error)
+        work = {"sweeps": tight.sweeps, "seconds": tight.seconds}
+        return _rope_row(self.job, None if unwritten else output, measures, status, **work), unwritten
+
+    def begun(self) -> Run:
+        """Return the run at its beginning."""
+        try:
+            return Run(self.file.components, list(self.todo), self.job.settings)
+        except ValueError as error:
+            raise FormatError(f"{self.file.name}: {error}") from error
+
+    def restored(self) -> Run | None:
+        """Return the run as the checkpoint has it, if it is of use."""
+        path = self.job.checkpoint
+        if not (self.job.resume and path and path.exists()):
+            return None
+        try:
+            state = json.loads(path.read_text(encoding="utf-8"))
+            same = state.pop("identity") == self.identity
+            run = Run.restore(state) if same else None
+        except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+            raise FormatError(f"{path}: is no checkpoint ({error}); remove it") from error
+        if run is None:
+            raise FormatError(f"{path}: is of another curve, n or setting; repeat those or remove it")
+        # An output that was written and then lost has to be made from the beginning.
+        return run if self.todo <= set(run.targets) else None
+
+    def save(self) -> None:
+        """Write the checkpoint, if there is to be one."""
+        self.saved = time.monotonic()
+        if self.job.checkpoint:
+            try:
+                with formats.atomic_text(self.job.checkpoint) as stream:
+                    json.dump(self.run.state() | {"identity": self.identity}, stream)
+            except OSError as error:
+                why = error.strerror or error
+                raise FormatError(f"{self.job.checkpoint}: cannot be written: {why}") from error
+
+    def way_on(self) -> str:
+        """Save a run that ends early; return what to add to the message about it."""
+        try:
+            self.save()
+        except FormatError as error:
+            return f"; {error}"
+        return "; --resume goes on from here" if self.job.checkpoint else ""
+
+
+def _located(error: CurveError, file: VertexFile) -> FormatError:
+    """Say in which line of its file a curve is wrong."""
+    message, component, vertex = error.args
+    where = file.name if component is None else file.where(component, vertex or 0)
+    return FormatError(f"{where}: {message}")
+
+
+def _rope_row(job: Job, output: str | None, measures: Measures, status: str, **more: Any) -> Row:
+    overlap = max(0.0, 2 - 2 * measures.sr)
+    return as_row(job.name, output, measures, overlap=overlap, status=status, **more)
+
+
+def _judged(job: Job, row: Row) -> Result:
+    """Make the result of a row whose vertices are in their file."""
+    if row["status"] == "tight":
+        return Result(row)
+    trouble = f"n = {row['n']} did not settle to {_tolerance(job):g}; {row['file']} has its best"
+    return Result(row, f"{job.name}: {trouble}")
+
+
+def _tolerance(job: Job) -> float:
+    return float((default_settings() | job.settings)["tolerance"])
+
+
+def _header(job: Job, tight: Tight, status: str) -> list[str]:
+    name = job.name.encode(errors="replace").decode()  # a file's name need not be text
+    m = tight.measures
+    l_c, l_a = (f"{value:.8f}" if value is not None else "-" for value in (m.l_c, m.l_a))
+    return [
+        f"{name}: {status} by SONO, rope radius R_s = 1",
+        f"n {m.n}  dl {m.dl:.8f}  L_p {m.l_p:.8f}  L_c {l_c}  L_a {l_a}  (length over radius)",
+        f"settings {json.dumps(job.settings)}",
+    ]
+
+
+def _is_stream(output: str) -> bool:
+    """Tell what can be written to but not read again: standard output, a device, a pipe."""
+    return output == "-" or (os.path.exists(output) and not os.path.isfile(output))
+
+
+def _free_name(output: str) -> str:
+    """A name beside `output` for an unfinished result: NAME.best.txt, NAME.best2.txt, ..."""
+    if _is_stream(output):
+        return output
+    path = Path(output)
+    names = (path.with_suffix(f".best{number}{path.suffix}") for number in chain([""], count(2)))
+    return os.fspath(next(name for name in names if not name.exists()))
+
+
+def _identity(job: Job, file: VertexFile) -> str:
+    """Return what must be the same for a checkpoint to be continued: curve, targets and settings."""
+    digest = hashlib.sha256(json.dumps([list(job.outputs), job.settings], sort_keys=True).encode())
+    for component in file.components:
+        digest.update(component.tobytes())
+        digest.update(b"end of component")
+    return digest.hexdigest()

@@ -1,0 +1,64 @@
+"""The command line: one module a command, imported when it is used."""
+
+import io
+import os
+import sys
+from importlib import import_module
+from typing import Any
+
+import click
+
+COMMANDS = {
+    "measure": "Measure curves: dl, L_p, L_c, L_a.",
+    "start": "Write the starting conformation of a knot.",
+    "tighten": "Tighten curves and write the paper's table.",
+}
+
+
+class _Commands(click.Group):
+    """Finds a command `sono NAME` in the module `sono.cli.NAME`; the help needs none of them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = import_module(f"sono.cli.{cmd_name}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command, and end well whatever stops it."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            ctx.exit(130)
+        except MemoryError:
+            click.echo("sono: this needs more memory than there is", err=True)
+        except OSError as error:  # those of files are met where files are read and written
+            if not isinstance(error, BrokenPipeError):
+                click.echo(f"sono: the output cannot be written: {error.strerror}", err=True)
+            # What could not be written is still in the buffer; Python would try again at its exit.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        ctx.exit(1)
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="sono")
+def main() -> None:
+    """Tighten knots: pull a closed curve tight as a rope of radius 1 and measure its ropelength.
+
+    Ropelength is length over the rope's RADIUS: the trefoil has 32.743.
+
+    \b
+      sono start 3_1 > trefoil.txt
+      sono tighten trefoil.txt -n 120,240,480
+      sono measure trefoil.n480.txt
+    """
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # A file's name in characters that the terminal has not must not stop a table.
+        sys.stdout.reconfigure(errors="backslashreplace")

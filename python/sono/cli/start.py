@@ -1,0 +1,62 @@
+"""`sono start NAME`: starting conformations."""
+
+import sys
+
+import click
+
+
+@click.command("start")
+@click.argument("name", required=False)
+@click.option("--braid", "word", metavar="WORD", help='Closure of a braid word such as "1 -2 1 -2".')
+@click.option(
+    "--scramble", "scramble_seed", type=int, metavar="SEED", help="Entangle the curve, isotopically."
+)
+@click.option("--list", "list_names", is_flag=True, help="List the names that are built in.")
+@click.option("-o", "--output", default="-", show_default=True, metavar="FILE", help="Where to write it.")
+@click.option("--force", is_flag=True, help="Overwrite FILE.")
+def command(
+    name: str | None, word: str | None, scramble_seed: int | None, list_names: bool, output: str, force: bool
+) -> None:
+    """Write the starting conformation of a knot or link.
+
+    NAME is a Rolfsen name (3_1), a torus knot or link ("T(2,5)", negative for the mirror image), Hopf, or
+    chain3; --list has them all.
+    """
+    # Imported here, since numpy would make --help wait.
+    from pathlib import Path
+
+    from sono import formats, library
+    from sono.cli import options
+
+    if list_names:
+        click.echo("\n".join(library.NAMES))
+        return
+    if (name is None) == (word is None):
+        raise click.UsageError("give either a NAME or a --braid word")
+    if output != "-" and Path(output).exists() and not force:
+        raise click.UsageError(f"{output} exists; --force overwrites it")
+    try:
+        if word is not None:
+            title = f"closed braid {word}"
+            curve = library.braid(_generators(word))
+        else:
+            assert name is not None
+            title = name
+            curve = library.start(name)
+        if scramble_seed is not None:
+            title += f", scrambled with seed {scramble_seed}"
+            curve = library.scramble(curve, scramble_seed)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
+    try:
+        formats.write(output, curve, [title])
+    except formats.FormatError as error:
+        options.complain(str(error))
+        sys.exit(1)
+
+
+def _generators(word: str) -> list[int]:
+    try:
+        return [int(generator) for generator in word.replace(",", " ").split()]
+    except ValueError:
+        raise click.UsageError(f'--braid {word!r}: give whole numbers such as "1 -2 1 -2"') from None

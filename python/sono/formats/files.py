@@ -1,0 +1,63 @@
+"""Bytes from and to disk: reading a whole text, and writing one that appears whole or not at all."""
+
+import os
+import secrets
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+from sono.formats.vertices import FormatError
+
+
+def load(source: str | os.PathLike[str]) -> tuple[str, str]:
+    r"""Give the name for messages and the text of a file, or of standard input for "-"; its lines end in \n.
+
+    Raises `FormatError` when the file cannot be read or is not UTF-8.
+    """
+    name = "<stdin>" if source == "-" else os.fspath(source)
+    try:
+        data = sys.stdin.buffer.read() if source == "-" else Path(source).read_bytes()
+    except OSError as error:
+        raise FormatError(f"{name}: cannot be read: {error.strerror or error}") from error
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        byte = f"0x{data[error.start]:02x}"
+        raise FormatError.at(
+            name, line, f"byte {byte} is not UTF-8 text; give rows of x y z or an ASCII VECT file"
+        ) from error
+    return name, text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+@contextmanager
+def atomic_text(path: str | os.PathLike[str]) -> Iterator[TextIO]:
+    """Open a text file for writing that replaces `path` only once it is complete and on the disk.
+
+    Upon any failure `path` stays as it was and nothing is left behind. Raises `OSError`.
+    """
+    # A link keeps pointing where it did, and a device or a pipe is written to, never replaced.
+    target = Path(os.path.realpath(path))
+    if target.exists() and not target.is_file() and not target.is_dir():
+        with target.open("w", encoding="utf-8", newline="\n") as stream:
+            yield stream
+        return
+    # In the same folder, since a rename across file systems would not be atomic.
+    part = target.with_name(f".sono-{secrets.token_hex(8)}.part")
+    try:
+        with part.open("x", encoding="utf-8", newline="\n") as stream:
+            yield stream
+            stream.flush()
+            os.fsync(stream.fileno())
+        if target.exists():
+            shutil.copymode(target, part)
+        part.replace(target)
+    except OSError as error:
+        if error.filename == str(part):  # the user knows nothing of this name
+            raise OSError(error.errno, error.strerror, os.fspath(path)) from error
+        raise
+    finally:
+        part.unlink(missing_ok=True)

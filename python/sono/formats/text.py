@@ -1,0 +1,66 @@
+"""Plain text: a vertex x y z a row, with spaces, tabs or commas between; a blank line starts a component.
+
+A `#` starts a comment anywhere. A line that holds only a comment separates nothing:
+
+    # a Hopf link begins
+    1.5  0  0      # first vertex
+    -0.5, 1, 0
+    ...
+
+    0 0 1.5        # first vertex of the second component
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sono.formats.vertices import FormatError, VertexFile, not_a_number, shown
+
+
+def read(text: str, name: str) -> VertexFile:
+    """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
+    components: list[tuple[list[tuple[float, float, float]], list[int]]] = []
+    rows: list[tuple[float, float, float]] = []
+    lines: list[int] = []
+    for number, line in enumerate((*text.split("\n"), ""), 1):  # the empty line ends the last component
+        data = line.partition("#")[0].strip()
+        if data:
+            cells = _cells(data)
+            try:
+                x, y, z = map(float, cells)
+            except ValueError:
+                raise FormatError.at(name, number, _wrong(cells)) from None
+            rows.append((x, y, z))
+            lines.append(number)
+        elif rows and not line.strip():
+            components.append((rows, lines))
+            rows, lines = [], []
+    if not components:
+        raise FormatError.at(name, 1, "the file holds no vertices; give rows of three numbers x y z")
+    return VertexFile.checked(name, components)
+
+
+def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:
+    """Give the whole file; every coordinate reads back to the same bits."""
+    head = "".join(f"# {line}".rstrip() + "\n" for comment in comments for line in comment.splitlines())
+    return head + "\n".join(
+        "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in vertices.tolist()) for vertices in components
+    )
+
+
+def _cells(data: str) -> list[str]:
+    """Split a row; a comma beside another one leaves an empty cell, so that a missing number is noticed."""
+    if "," not in data:
+        return data.split()
+    if data.count(",") == 2:  # twice as fast as the general way, for the common case; float() strips
+        return data.split(",")
+    return re.split(r"\s*,\s*|\s+", data)
+
+
+def _wrong(cells: Sequence[str]) -> str:
+    bad = not_a_number(cells)
+    if len(cells) != 3 or bad is None:
+        return f"{len(cells)} columns; give three numbers x y z, and start other lines with #"
+    return f"{shown(cells[bad])} is not a number; give three numbers x y z, and start other lines with #"

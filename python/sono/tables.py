@@ -1,0 +1,228 @@
+"""Rows of results as a table: aligned text, TSV, CSV, JSON lines, Markdown or LaTeX.
+
+Each row is written and flushed as soon as it is finished, so that a later failure loses nothing. Text,
+Markdown and LaTeX round for the reader; TSV, CSV and JSON keep every digit for the next program.
+"""
+
+import csv
+import io
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self, TextIO
+
+Value = str | int | float | None
+Row = Mapping[str, Value]
+
+CAPTION = "Ropelength is length over the RADIUS of the rope (R = 1)."
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: its `key` in a row, its headers, the `spec` that rounds it, its `width` in a text table.
+
+    A column without a `spec` holds text and is aligned to the left.
+    """
+
+    key: str
+    header: str
+    latex: str
+    spec: str
+    width: int
+
+
+COLUMNS = {
+    column.key: column
+    for column in (
+        Column("knot", "knot", "knot", "", 12),
+        Column("n", "n", "$n$", "d", 6),
+        Column("components", "components", "components", "d", 10),
+        Column("dl", "dl", "$dl$", ".8f", 10),
+        Column("l_p", "L_p", "$L_p$", ".6f", 11),
+        Column("l_c", "L_c", "$L_c$", ".6f", 11),
+        Column("l_a", "L_a", "$L_a=(4 L_p+L_c)/5$", ".6f", 11),
+        Column("dispersion", "dispersion", "dispersion", ".1e", 10),
+        Column("min_rad", "MinRad", "$MinRad$", ".9f", 12),
+        Column("sr", "SR", "$SR$", ".9f", 12),
+        Column("r_s", "R_s", "$R_s$", ".9f", 12),
+        Column("r_c", "R_c", "$R_c$", ".9f", 12),
+        Column("length", "Length(P)", "$Length(P)$", ".6f", 12),
+        Column("inscribed_length", "Length(K_P)", "$Length(K_P)$", ".6f", 12),
+        Column("overlap", "overlap", "overlap", ".1e", 8),
+        Column("sweeps", "sweeps", "sweeps", "d", 9),
+        Column("seconds", "seconds", "seconds", ".2f", 9),
+        Column("status", "status", "status", "", 12),
+        Column("file", "file", "file", "", 12),
+    )
+}
+
+DEFAULT = ("knot", "n", "dl", "l_p", "l_c", "l_a")
+
+
+class TableWriter:
+    """Writes a table to a stream row by row; as a context manager it also writes header and end.
+
+    A row may hold more keys than the table has columns; what it lacks, or holds as None, prints as a dash.
+    """
+
+    def __init__(self, columns: Sequence[Column], stream: TextIO) -> None:
+        """Write `columns` to `stream`, which stays open."""
+        self._columns = columns
+        self._stream = stream
+
+    def header(self) -> None:
+        """Write what comes before the rows."""
+        self._put(self._head())
+
+    def row(self, row: Row) -> None:
+        """Write one row, in full, now."""
+        self._put(self._line(row))
+
+    def close(self) -> None:
+        """Write what comes after the rows."""
+        self._put(self._foot())
+
+    def __enter__(self) -> Self:
+        """Write the header."""
+        self.header()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Write the end, after a failure too: the rows so far make a complete table."""
+        self.close()
+
+    def _put(self, text: str) -> None:
+        self._stream.write(text)
+        self._stream.flush()
+
+    def _head(self) -> str:
+        raise NotImplementedError
+
+    def _line(self, row: Row) -> str:
+        raise NotImplementedError
+
+    def _foot(self) -> str:
+        return ""
+
+
+class _Text(TableWriter):
+    def _head(self) -> str:
+        return f"{CAPTION}\n{self._aligned([column.header for column in self._columns])}"
+
+    def _line(self, row: Row) -> str:
+        return self._aligned([_rounded(row, column) for column in self._columns])
+
+    def _aligned(self, cells: Sequence[str]) -> str:
+        padded = (
+            cell.rjust(column.width) if column.spec else cell.ljust(column.width)
+            for cell, column in zip(cells, self._columns, strict=True)
+        )
+        return "  ".join(padded).rstrip() + "\n"
+
+
+class _Delimited(TableWriter):
+    delimiter: str
+
+    def _head(self) -> str:
+        return self._joined([column.header for column in self._columns])
+
+    def _line(self, row: Row) -> str:
+        return self._joined([_exact(row.get(column.key)) for column in self._columns])
+
+    def _joined(self, cells: Sequence[str]) -> str:
+        line = io.StringIO()
+        csv.writer(line, delimiter=self.delimiter, lineterminator="\n").writerow(cells)
+        return line.getvalue()
+
+
+class _Tsv(_Delimited):
+    delimiter = "\t"
+
+
+class _Csv(_Delimited):
+    delimiter = ","
+
+
+class _Json(TableWriter):
+    def _head(self) -> str:
+        return ""
+
+    def _line(self, row: Row) -> str:
+        values = {column.key: row.get(column.key) for column in self._columns}
+        # JSON has no infinity: the SR of a curve without distant vertices becomes null.
+        finite = {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in values.items()}
+        return json.dumps(finite) + "\n"
+
+
+class _Markdown(TableWriter):
+    def _head(self) -> str:
+        rule = ["---:" if column.spec else ":---" for column in self._columns]
+        return f"{CAPTION}\n\n{self._bars([column.header for column in self._columns])}{self._bars(rule)}"
+
+    def _line(self, row: Row) -> str:
+        return self._bars([re.sub(r"([\\|`*<])", r"\\\1", _rounded(row, column)) for column in self._columns])
+
+    def _bars(self, cells: Sequence[str]) -> str:
+        return f"| {' | '.join(cells)} |\n"
+
+
+class _Latex(TableWriter):
+    """The look of the paper's tables."""
+
+    def _head(self) -> str:
+        shape = "|" + "c|" * len(self._columns)
+        return (
+            f"% {CAPTION}\n\\begin{{tabular}}{{{shape}}}\n\\hline\n"
+            f"{self._ampersands([column.latex for column in self._columns])}\\hline\n"
+        )
+
+    def _line(self, row: Row) -> str:
+        return self._ampersands([_latex(_rounded(row, column)) for column in self._columns])
+
+    def _foot(self) -> str:
+        return "\\hline\n\\end{tabular}\n"
+
+    def _ampersands(self, cells: Sequence[str]) -> str:
+        return f"{' & '.join(cells)} \\\\\n"
+
+
+FORMATS: dict[str, type[TableWriter]] = {
+    "table": _Text,
+    "tsv": _Tsv,
+    "csv": _Csv,
+    "json": _Json,
+    "md": _Markdown,
+    "latex": _Latex,
+}
+
+
+def writer(format: str, columns: Sequence[str], stream: TextIO) -> TableWriter:
+    """Make the writer of a format in `FORMATS` for some keys of `COLUMNS`. Raises `ValueError` for others."""
+    if format not in FORMATS:
+        raise ValueError(f"unknown table format {format!r}; the formats are: {', '.join(FORMATS)}")
+    for key in columns:
+        if key not in COLUMNS:
+            raise ValueError(f"unknown column {key!r}; the columns are: {', '.join(COLUMNS)}")
+    return FORMATS[format]([COLUMNS[key] for key in columns], stream)
+
+
+def _rounded(row: Row, column: Column) -> str:
+    value = row.get(column.key)
+    return _exact(value) if value is None or isinstance(value, str) else format(value, column.spec)
+
+
+def _exact(value: Value) -> str:
+    if isinstance(value, str):
+        # A row stays one line, and a file name that is not UTF-8 does not stop the table. JSON keeps both.
+        return re.sub(r"[\t\n\v\f\r]", " ", value).encode(errors="replace").decode()
+    return "-" if value is None else str(value)
+
+
+def _latex(text: str) -> str:
+    commands = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
+    return re.sub(r"[\\~^&%$#_{}]", lambda found: commands.get(found[0], "\\" + found[0]), text)

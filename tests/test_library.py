@@ -1,0 +1,189 @@
+"""The starting conformations: their knot types, their shapes, and the files in knots/ made from them."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from invariants import Curve, Floats, crossings, fingerprint
+
+from sono.library import NAMES, braid, chain, mirror, scramble, start, torus
+
+KNOTS = Path(__file__).parent.parent / "knots"
+FILES = {
+    "3_1": "3_1",
+    "4_1": "4_1",
+    "5_1": "5_1",
+    "7_1": "7_1",
+    "8_19": "8_19",
+    "9_1": "9_1",
+    "T(2,59)": "t_2_59",
+    "Hopf": "hopf",
+    "chain3": "chain3",
+}
+UNKNOT = fingerprint(chain(1))
+TEN = "1 1 2 -1 -3 2 -3 4 -3 4"
+
+
+def turning_angles(component: Floats) -> Floats:
+    edges = np.roll(component, -1, axis=0) - component
+    edges /= np.linalg.norm(edges, axis=1, keepdims=True)
+    degrees: Floats = np.degrees(np.arccos(np.clip((edges * np.roll(edges, 1, axis=0)).sum(axis=1), -1, 1)))
+    return degrees
+
+
+def ropelength(curve: Curve) -> float:
+    """Length over rope radius, by brute force: the least of MinRad and half the distance of far vertices."""
+    lengths = [np.linalg.norm(np.roll(component, -1, axis=0) - component, axis=1) for component in curve]
+    radius = min(
+        float((np.minimum(s, np.roll(s, 1)) / 2 / np.tan(np.radians(turning_angles(component) / 2))).min())
+        for s, component in zip(lengths, curve, strict=True)
+    )
+    for i, one in enumerate(curve):
+        for two in curve[i:]:
+            distance = np.linalg.norm(one[:, None] - two, axis=2)
+            if one is two:
+                place = np.cumsum(lengths[i]) - lengths[i]
+                arc = abs(place[:, None] - place)
+                distance[np.minimum(arc, lengths[i].sum() - arc) < math.pi] = np.inf
+            radius = min(radius, float(distance.min()) / 2)
+    return float(sum(s.sum() for s in lengths)) / radius
+
+
+def test_names_have_their_types() -> None:
+    assert fingerprint(start("0_1")) == fingerprint(start("unknot")) == UNKNOT
+    assert fingerprint(start("3_1")) == fingerprint(braid([1, 1, 1])) == fingerprint(torus(3, 2))
+    assert fingerprint(start("4_1")) == fingerprint(braid([-1, 2, -1, 2]))
+    assert fingerprint(start("5_1")) == fingerprint(braid([1] * 5))
+    assert fingerprint(start("7_1")) == fingerprint(braid([1] * 7))
+    assert fingerprint(start("8_19")) == fingerprint(braid([1, 1, 1, 2, 1, 1, 1, 2]))
+    assert fingerprint(start("9_1")) == fingerprint(braid([1] * 9))
+    assert fingerprint(start("Hopf")) == fingerprint(start("2^2_1")) == fingerprint(braid([1, 1]))
+    assert fingerprint(start("chain3")) == fingerprint([braid([1, 1, 2, 2])[k] for k in (0, 1, 2)])
+
+
+def test_spelling_does_not_matter() -> None:
+    for spelling in ("T(2,5)", " t( 2 , 5 ) "):
+        np.testing.assert_array_equal(start(spelling)[0], torus(2, 5)[0])
+    for spelling in ("1 -2 1 -2", "1, -2, 1, -2"):
+        np.testing.assert_array_equal(start(spelling)[0], start("4_1")[0])
+    np.testing.assert_array_equal(start("hopf")[1], start("L2A1")[1])
+
+
+def test_negative_torus_types_are_mirror_images() -> None:
+    assert fingerprint(start("T(2,-3)")) == fingerprint(mirror(start("3_1"))) != fingerprint(start("3_1"))
+    assert fingerprint(start("T(-2,-3)")) == fingerprint(start("3_1"))
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("3_2", "did you mean '3_1'"),
+        ("31", "did you mean '3_1'"),
+        ("quipu", "Known are unknot, 0_1"),
+        ("T(0,3)", "must not be zero"),
+        ("T(2,0)", "must not be zero"),
+        ("chain0", "at least one ring"),
+        ("1 0 1", "must not be 0"),
+    ],
+)
+def test_bad_names(name: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        start(name)
+
+
+def test_too_few_vertices() -> None:
+    with pytest.raises(ValueError, match="at least 3 vertices"):
+        torus(2, 3, n=2)
+
+
+@pytest.mark.parametrize(("p", "q", "components"), [(2, 3, 1), (2, 4, 2), (6, 9, 3), (4, 4, 4), (1, 1, 1)])
+def test_torus_components(p: int, q: int, components: int) -> None:
+    curve = torus(p, q)
+    assert len(curve) == components
+    assert [len(component) for component in torus(p, q, n=50)] == [50] * components
+
+
+@pytest.mark.parametrize(("p", "q"), [(2, 5), (3, 4), (5, 2), (4, 7)])
+def test_torus_symmetry(p: int, q: int) -> None:
+    turn = 2 * np.pi / q
+    rotation = np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    points = np.vstack(torus(p, q))
+    distance = np.linalg.norm((points @ rotation)[:, None] - points, axis=2)
+    assert distance.min(axis=1).max() < 1e-13
+
+
+@pytest.mark.parametrize("name", [*NAMES, "T(2,59)", "T(3,2)", "T(3,3)", "T(4,5)", "1 1", "2 -2", "1 1 1 -3"])
+def test_starts_are_smooth_and_deterministic(name: str) -> None:
+    curve = start(name)
+    for component, again in zip(curve, start(name), strict=True):
+        assert component.dtype == np.float64
+        np.testing.assert_array_equal(component, again)
+        assert turning_angles(component).max() < 20
+
+
+# One crossing more than the diagram has, for the closure of the rope.
+@pytest.mark.parametrize(
+    ("name", "crossings"),
+    [
+        *[("3_1", 3), ("4_1", 4), ("5_1", 5), ("7_1", 7), ("8_19", 8), ("9_1", 9), ("T(2,59)", 59)],
+        *[("Hopf", 2), ("chain3", 4), ("1 1 1", 3), ("1 -2 1 -2 1 -2", 6), ("T(3,5)", 10), (TEN, 10)],
+    ],
+)
+def test_starts_are_short_for_their_thickness(name: str, crossings: int) -> None:
+    assert ropelength(start(name)) < 30 * (crossings + 1)
+
+
+@pytest.mark.parametrize(
+    ("word", "components"),
+    [([], 1), ([1], 1), ([2], 2), ([1, 3], 2), ([1, 1], 2), ([1, 2, 3], 1), ([1, -2] * 3, 3)],
+)
+def test_braid_components(word: list[int], components: int) -> None:
+    assert len(braid(word)) == components
+
+
+def test_braid_relations() -> None:
+    assert fingerprint(braid([1, 2, 1, 1, 2])) == fingerprint(braid([2, 1, 2, 1, 2]))
+    assert fingerprint(braid([1, 1, 1, 3, -3, 2, 3])) == fingerprint(start("3_1"))
+    assert fingerprint(braid([1, 1, -1])) == UNKNOT
+
+
+def test_far_crossings_share_a_sector() -> None:
+    assert sum(map(len, braid([1, 3] * 4))) < sum(map(len, braid([1, 2] * 3 + [1, 3])))
+
+
+def test_chain_rings_are_round() -> None:
+    for ring in chain(4):
+        np.testing.assert_allclose(np.linalg.norm(ring - ring.mean(axis=0), axis=1), 3, rtol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_scrambled_circle_stays_unknotted(seed: int) -> None:
+    assert fingerprint(scramble(chain(1), seed, swirls=10)) == UNKNOT
+
+
+def test_scrambled_circle_is_entangled() -> None:
+    assert len(crossings(scramble(chain(1), seed=1, swirls=20)).sign) > 5
+
+
+def test_scramble_follows_the_seed() -> None:
+    one, same, other = (scramble(start("3_1"), seed, swirls=5)[0] for seed in (1, 1, 2))
+    np.testing.assert_array_equal(one, same)
+    assert one.shape != other.shape or not np.allclose(one, other)
+
+
+def test_scramble_refuses_a_curve_that_touches_itself() -> None:
+    eight = np.array([[0.0, 0, 0], [1, 1, 0], [1, -1, 0], [0, 0, 0], [-1, 1, 0], [-1, -1, 0]])
+    with pytest.raises(ValueError, match="touches itself"):
+        scramble([eight], seed=0)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_files_are_the_starts_to_six_decimals(name: str) -> None:
+    text = (KNOTS / f"{FILES[name]}.txt").read_text(encoding="utf-8")
+    header, body = text.split("\n", 1)
+    assert header.startswith(f"# {name}: ")
+    assert header.removesuffix(name).removesuffix(f'"{name}"').endswith("made by: sono start ")
+    for block, component in zip(body.split("\n\n"), start(name), strict=True):
+        rows = [row.split() for row in block.splitlines()]
+        np.testing.assert_allclose(np.array(rows, np.float64), component, rtol=0, atol=5.01e-7)

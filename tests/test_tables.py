@@ -1,0 +1,174 @@
+"""Tables: the exact text of each format, and that a row is out before the next one is computed."""
+
+import csv
+import io
+import json
+import math
+
+import pytest
+
+from sono.tables import COLUMNS, DEFAULT, FORMATS, Row, writer
+
+TREFOIL: Row = {
+    "knot": "3_1",
+    "n": 120,
+    "dl": 0.2724306812345678,
+    "l_p": 32.69168123456789,
+    "l_c": 32.94095,
+    "l_a": 32.741534,
+    "seconds": 1.5,
+}
+FAILED: Row = {"knot": "a|b & 100%\t", "n": 60, "dl": None, "status": "stuck"}
+
+
+def table(format: str, *rows: Row, columns: tuple[str, ...] = DEFAULT) -> str:
+    stream = io.StringIO()
+    with writer(format, columns, stream) as rows_of:
+        for row in rows:
+            rows_of.row(row)
+    return stream.getvalue()
+
+
+def test_text() -> None:
+    assert table("table", TREFOIL, FAILED, {**TREFOIL, "knot": "a_much_longer_name"}).split("\n") == [
+        "Ropelength is length over the RADIUS of the rope (R = 1).",
+        "knot               n          dl          L_p          L_c          L_a",
+        "3_1              120  0.27243068    32.691681    32.940950    32.741534",
+        "a|b & 100%        60           -            -            -            -",
+        "a_much_longer_name     120  0.27243068    32.691681    32.940950    32.741534",
+        "",
+    ]
+
+
+def test_tsv_and_csv_keep_every_digit() -> None:
+    assert table("tsv", TREFOIL, FAILED) == (
+        "knot\tn\tdl\tL_p\tL_c\tL_a\n"
+        "3_1\t120\t0.2724306812345678\t32.69168123456789\t32.94095\t32.741534\n"
+        "a|b & 100% \t60\t-\t-\t-\t-\n"
+    )
+    assert table("csv", TREFOIL, FAILED) == (
+        "knot,n,dl,L_p,L_c,L_a\n"
+        "3_1,120,0.2724306812345678,32.69168123456789,32.94095,32.741534\n"
+        "a|b & 100% ,60,-,-,-,-\n"
+    )
+
+
+@pytest.mark.parametrize(("format", "delimiter"), [("tsv", "\t"), ("csv", ",")])
+def test_names_do_not_break_tsv_and_csv(format: str, delimiter: str) -> None:
+    content = table(format, {"file": 'a\tb\nc,"d"', "n": 3}, columns=("file", "n"))
+    assert content.count("\n") == 2
+    assert list(csv.reader(io.StringIO(content), delimiter=delimiter)) == [
+        ["file", "n"],
+        ['a b c,"d"', "3"],
+    ]
+
+
+def test_json_lines() -> None:
+    lines = table("json", TREFOIL, FAILED).splitlines()
+    assert json.loads(lines[0]) == {key: TREFOIL[key] for key in DEFAULT}
+    assert json.loads(lines[1]) == {
+        "knot": "a|b & 100%\t",
+        "n": 60,
+        "dl": None,
+        "l_p": None,
+        "l_c": None,
+        "l_a": None,
+    }
+
+
+def test_json_has_no_infinity() -> None:
+    assert table("json", {"sr": math.inf}, columns=("sr",)) == '{"sr": null}\n'
+
+
+def test_markdown() -> None:
+    assert table("md", TREFOIL, FAILED) == (
+        "Ropelength is length over the RADIUS of the rope (R = 1).\n"
+        "\n"
+        "| knot | n | dl | L_p | L_c | L_a |\n"
+        "| :--- | ---: | ---: | ---: | ---: | ---: |\n"
+        "| 3_1 | 120 | 0.27243068 | 32.691681 | 32.940950 | 32.741534 |\n"
+        "| a\\|b & 100%  | 60 | - | - | - | - |\n"
+    )
+
+
+def test_latex() -> None:
+    assert table("latex", TREFOIL, FAILED) == (
+        "% Ropelength is length over the RADIUS of the rope (R = 1).\n"
+        "\\begin{tabular}{|c|c|c|c|c|c|}\n"
+        "\\hline\n"
+        "knot & $n$ & $dl$ & $L_p$ & $L_c$ & $L_a=(4 L_p+L_c)/5$ \\\\\n"
+        "\\hline\n"
+        "3\\_1 & 120 & 0.27243068 & 32.691681 & 32.940950 & 32.741534 \\\\\n"
+        "a|b \\& 100\\%  & 60 & - & - & - & - \\\\\n"
+        "\\hline\n"
+        "\\end{tabular}\n"
+    )
+
+
+def test_latex_escapes_names() -> None:
+    row = table("latex", {"knot": r"\~^&%$#_{}"}, columns=("knot",)).splitlines()[5]
+    assert row == r"\textbackslash{}\textasciitilde{}\textasciicircum{}\&\%\$\#\_\{\} \\"
+
+
+def test_precision_of_every_column() -> None:
+    row: Row = dict.fromkeys(COLUMNS, 1.23456789012) | dict.fromkeys(("n", "components", "sweeps"), 7)
+    cells = dict(
+        zip(COLUMNS, table("md", row, columns=tuple(COLUMNS)).splitlines()[4].split("|")[1:], strict=False)
+    )
+    expected = {
+        "n": "7",
+        "components": "7",
+        "dl": "1.23456789",
+        "l_a": "1.234568",
+        "dispersion": "1.2e+00",
+        "overlap": "1.2e+00",
+        "min_rad": "1.234567890",
+        "r_s": "1.234567890",
+        "sweeps": "7",
+        "seconds": "1.23",
+    }
+    assert {key: cells[key].strip() for key in expected} == expected
+
+
+class Flushed(io.StringIO):
+    """Remembers what had been flushed."""
+
+    seen = ""
+
+    def flush(self) -> None:
+        self.seen = self.getvalue()
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_rows_are_out_as_soon_as_they_are_finished(format: str) -> None:
+    stream = Flushed()
+    rows = writer(format, DEFAULT, stream)
+    rows.header()
+    rows.row(TREFOIL)
+    assert stream.seen.count("120") == 1
+    assert stream.seen.endswith("\n")
+    rows.row(TREFOIL)
+    assert stream.seen.count("120") == 2
+    rows.close()
+    assert stream.seen == table(format, TREFOIL, TREFOIL)
+
+
+def test_failure_leaves_a_complete_table() -> None:
+    stream = io.StringIO()
+    with pytest.raises(RuntimeError), writer("latex", DEFAULT, stream):
+        raise RuntimeError
+    assert stream.getvalue().endswith("\\end{tabular}\n")
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_names_that_are_not_utf_8_can_be_printed(format: str) -> None:
+    table(format, {"file": "knot\udcff"}, columns=("file",)).encode()
+
+
+def test_unknown_names_are_answered_with_the_known_ones() -> None:
+    with pytest.raises(
+        ValueError, match="unknown table format 'xls'; the formats are: table, tsv, csv, json, md"
+    ):
+        writer("xls", DEFAULT, io.StringIO())
+    with pytest.raises(ValueError, match="unknown column 'L'; the columns are: knot, n, components, dl, l_p"):
+        writer("table", ["L"], io.StringIO())
