@@ -231,7 +231,10 @@ impl Tightener {
         if self.met.worst() < tolerance {
             self.rope.stretch(1. - rate);
         } else if self.met.worst() > 2. * tolerance {
-            self.rope.stretch(1. + 0.3 * rate);
+            // Past the planned sweeps the aim is no longer a short rope but a valid one.
+            let overdue = self.sweeps > self.planned;
+            let rate = if overdue { 1e-3 * self.met.worst() } else { 0.3 * rate };
+            self.rope.stretch(1. + rate);
         }
     }
 

@@ -3,16 +3,20 @@
 Components are a list of (n_i, 3) float64 arrays. Lengths are in the unit of the vertices.
 """
 
-from typing import Literal
+from typing import Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 
-Components = list[NDArray[np.float64]]
+__all__ = ["CurveError", "Measures", "Status", "Tightener", "default_settings", "measure", "refine"]
+
+_Components: TypeAlias = list[NDArray[np.float64]]
+_Stage: TypeAlias = Literal["collapse", "anneal", "settle"]
 
 class CurveError(ValueError):
     """A curve that cannot be used; `args` are the message, the component and the vertex (or None)."""
 
+@final
 class Measures:
     """What a curve measures; see the README's glossary. `l_*` are ropelengths, lengths over the radius."""
 
@@ -43,13 +47,14 @@ class Measures:
     @property
     def l_a(self) -> float | None: ...
 
+@final
 class Status:
     """Where a `Tightener` stands; `overlap` and `dispersion` are those the last sweep met, R = 1."""
 
     @property
     def outcome(self) -> Literal["running", "tight", "stuck"]: ...
     @property
-    def stage(self) -> Literal["collapse", "anneal", "settle"]: ...
+    def stage(self) -> _Stage: ...
     @property
     def progress(self) -> float: ...
     @property
@@ -65,22 +70,23 @@ class Status:
     @property
     def best(self) -> Measures: ...
 
+@final
 class Tightener:
     """One stage of SONO on n vertices in all (n is not used by "collapse"); `settings` is JSON."""
 
     def __new__(
         cls,
-        components: Components,
-        stage: Literal["collapse", "anneal", "settle"],
+        components: _Components,
+        stage: _Stage,
         n: int,
         settings: str,
     ) -> Tightener: ...
     def advance(self, seconds: float) -> Status: ...
-    def best(self) -> Components: ...
+    def best(self) -> _Components: ...
     def state(self) -> str: ...
     @staticmethod
     def restore(state: str) -> Tightener: ...
 
-def measure(components: Components) -> Measures: ...
-def refine(components: Components, n: int) -> Components: ...
+def measure(components: _Components) -> Measures: ...
+def refine(components: _Components, n: int) -> _Components: ...
 def default_settings() -> str: ...

@@ -248,7 +248,8 @@ def _header(job: Job, tight: Tight, status: str) -> list[str]:
 
 def _is_stream(output: str) -> bool:
     """Tell what can be written to but not read again: standard output, a device, a pipe."""
-    return output == "-" or (os.path.exists(output) and not os.path.isfile(output))
+    path = Path(output)
+    return output == "-" or (path.exists() and not path.is_file() and not path.is_dir())
 
 
 def _free_name(output: str) -> str:

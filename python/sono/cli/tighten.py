@@ -8,7 +8,7 @@ import threading
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -167,7 +167,8 @@ class _Batch:
             self.stop = "the table cannot be written"
             raise
         finally:
-            self.bar.remove_task(task)
+            with self.lock:
+                self.bar.remove_task(task)
 
     def show(self, result: "Result") -> None:
         """Write a row, and tell what is wrong with it."""
@@ -188,8 +189,7 @@ class _Batch:
         self.bar.refresh()
         yield
         for task in tasks:
-            with suppress(KeyError):  # done in the meantime
-                self.bar.update(task, visible=True)
+            self.bar.update(task, visible=True)
 
     def watch(self, task: "TaskID", progress: "Progress") -> None:
         """Show the live state, and stop when it is time to."""

@@ -1,0 +1,81 @@
+"""What the tests of the command line share: `sono` in this process, and `sono` as a process of its own."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import pytest
+from click.testing import CliRunner, Result
+
+from sono import formats, library, pipeline
+from sono.cli import main
+
+Sono: TypeAlias = Callable[..., Result]
+Spawn: TypeAlias = Callable[..., subprocess.Popen[str]]
+
+QUICK = ("--set", "anneal_sweeps=500", "--set", "settle_sweeps=100", "--set", "tolerance=1e-2")
+"""Settings with which 60 beads of a trefoil are tight in a few hundredths of a second."""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder to work in, but for two starting conformations."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("3_1", "Hopf"):
+        formats.write(tmp_path / f"{name}.txt", library.start(name))
+    return tmp_path
+
+
+@pytest.fixture
+def sono(folder: Path) -> Sono:
+    """Run `sono ARGUMENT...` in the folder; what it does not expect fails the test."""
+
+    def run(*arguments: str, input: str | None = None) -> Result:
+        return CliRunner().invoke(main, arguments, input=input, catch_exceptions=False)
+
+    return run
+
+
+@pytest.fixture
+def slices(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cut runs into slices of 50 sweeps, however fast the machine is."""
+    monkeypatch.setattr(pipeline, "SLICE", 1e-9)
+
+
+@pytest.fixture
+def spawn(folder: Path) -> Iterator[Spawn]:
+    """Start `sono ARGUMENT...` as a process in the folder, with its output in pipes."""
+    processes = []
+
+    def start(
+        *arguments: str, limit: Callable[[], None] = lambda: None, **more: Any
+    ) -> subprocess.Popen[str]:
+        def prepare() -> None:
+            # Background jobs of a shell ignore Ctrl-C, and so would their children.
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+            limit()
+
+        pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        process = subprocess.Popen(
+            [sys.executable, "-c", "from sono.cli import main; main(prog_name='sono')", *arguments],
+            text=True,
+            preexec_fn=prepare if os.name == "posix" else None,
+            **(pipes | more),
+        )
+        processes.append(process)
+        return process
+
+    yield start
+    for process in processes:
+        process.kill()
+        with process:  # closes its pipes
+            pass
+
+
+def vertices(path: Path) -> str:
+    """The rows of a file, without its comments."""
+    return "".join(row for row in path.read_text().splitlines(True) if not row.startswith("#"))

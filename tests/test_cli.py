@@ -1,0 +1,124 @@
+"""The group: what holds for every command."""
+
+import os
+import signal
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from conftest import QUICK, Sono, Spawn
+
+import sono as package
+from sono.cli import COMMANDS
+
+posix = pytest.mark.skipif(os.name != "posix", reason="needs Unix signals and devices")
+
+
+def test_help_names_every_command(sono: Sono) -> None:
+    result = sono("--help")
+    assert result.exit_code == 0
+    assert all(f"  {name} " in result.output for name in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_each_command_has_a_help(sono: Sono, command: str) -> None:
+    result = sono(command, "-h")
+    assert result.exit_code == 0
+    assert result.output.startswith(f"Usage: main {command} [OPTIONS]")
+
+
+def test_help_waits_for_no_large_module() -> None:
+    script = (
+        "import sys; from sono.cli import COMMANDS, main\n"
+        "for name in ('', *COMMANDS): main([*filter(None, [name]), '--help'], standalone_mode=False)\n"
+        "sys.exit(' '.join({'numpy', 'rich', 'sono._core'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.stderr.strip() == ""
+    assert done.stdout.count("Usage:") == 1 + len(COMMANDS)
+
+
+def test_version(sono: Sono) -> None:
+    assert version("sono") == package.__version__
+    assert package.__version__ in sono("--version").output
+
+
+def test_public_names() -> None:
+    assert sorted(package._HOMES) == sorted(package.__all__)
+    for name in package.__all__:
+        assert getattr(package, name).__name__ == name
+    with pytest.raises(AttributeError, match="no attribute 'loosen'"):
+        _ = package.loosen
+
+
+@pytest.mark.parametrize("arguments", [["loosen"], ["measure"], ["measure", "--fast", "x"], ["tighten"]])
+def test_usage_errors(sono: Sono, arguments: list[str]) -> None:
+    result = sono(*arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert "Usage:" in result.stderr
+
+
+COMMAND_LINES = [
+    ["measure", "3_1.txt", "3_1.txt"],
+    ["start", "3_1"],
+    ["tighten", "3_1.txt", "Hopf.txt", "-n", "60", *QUICK],
+    ["tighten", "3_1.txt", "-n", "60", "-o", "-", *QUICK],
+]
+each_command = pytest.mark.parametrize("arguments", COMMAND_LINES, ids=lambda a: " ".join(a[:5]))
+
+
+@posix
+@each_command
+def test_nobody_reads_the_output(spawn: Spawn, arguments: list[str]) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    process = spawn(*arguments, "--quiet" if arguments[0] != "start" else "--force", stdout=writing)
+    os.close(writing)
+    assert process.communicate()[1] == ""
+    assert process.returncode == 1
+
+
+@posix
+@each_command
+def test_no_room_for_the_output(spawn: Spawn, arguments: list[str]) -> None:
+    if not os.path.exists("/dev/full"):
+        pytest.skip("needs /dev/full")
+    with open("/dev/full", "w") as full:
+        process = spawn(*arguments, stdout=full)
+    _, stderr = process.communicate()
+    assert stderr.endswith("sono: the output cannot be written: No space left on device\n")
+    assert "Traceback" not in stderr
+    assert process.returncode == 1
+
+
+@posix
+def test_ctrl_c_while_waiting_for_input(spawn: Spawn) -> None:
+    process = spawn("measure", "-", stdin=subprocess.PIPE)
+    assert process.stdin
+    assert process.stdout
+    assert process.stdout.readline().startswith("knot\t")  # now it reads
+    process.send_signal(signal.SIGINT)
+    assert process.wait() == 130
+    assert "Traceback" not in process.communicate()[1]
+
+
+def test_a_name_that_the_terminal_cannot_show(folder: Path, spawn: Spawn) -> None:
+    (folder / "3_1.txt").rename(folder / "三葉.txt")
+    process = spawn("measure", "三葉.txt", env=os.environ | {"PYTHONIOENCODING": "ascii"})
+    stdout, stderr = process.communicate()
+    assert stdout.splitlines()[1].startswith(r"\u4e09\u8449" + "\t")
+    assert (stderr, process.returncode) == ("", 0)
+
+
+@posix
+def test_a_pipeline(folder: Path) -> None:
+    sono = f"{sys.executable} -c 'from sono.cli import main; main()'"
+    line = f"{sono} start 3_1 | {sono} tighten - -n 60 -o - -q {' '.join(QUICK)} | {sono} measure -"
+    done = subprocess.run(line, shell=True, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    header, row = done.stdout.splitlines()
+    assert header.split("\t")[:4] == ["knot", "n", "dl", "L_p"]
+    assert row.split("\t")[:2] == ["stdin", "60"]

@@ -1,0 +1,82 @@
+"""`sono start`: starting conformations by name and by braid word."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Sono
+
+from sono import formats, library
+
+
+def same(path: Path, curve: library.Curve) -> bool:
+    read = formats.read(path).components
+    return len(read) == len(curve) and all(map(np.array_equal, read, curve))
+
+
+def test_a_name(folder: Path, sono: Sono) -> None:
+    result = sono("start", "4_1")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout.startswith("# 4_1\n")
+    (folder / "out.txt").write_text(result.stdout)
+    assert same(folder / "out.txt", library.start("4_1"))
+
+
+def test_a_braid_word(folder: Path, sono: Sono) -> None:
+    assert sono("start", "--braid", "1, -2 1 -2", "-o", "out.txt").exit_code == 0
+    assert same(folder / "out.txt", library.braid([1, -2, 1, -2]))
+
+
+def test_scrambled(folder: Path, sono: Sono) -> None:
+    assert sono("start", "3_1", "--scramble", "5", "-o", "out.txt").exit_code == 0
+    assert same(folder / "out.txt", library.scramble(library.start("3_1"), 5))
+
+
+def test_the_suffix_gives_the_format(folder: Path, sono: Sono) -> None:
+    assert sono("start", "Hopf", "-o", "out.vect").exit_code == 0
+    assert (folder / "out.vect").read_text().startswith("VECT\n")
+    assert same(folder / "out.vect", library.start("Hopf"))
+
+
+def test_list(sono: Sono) -> None:
+    assert sono("start", "--list").stdout.split() == list(library.NAMES)
+
+
+def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
+    (folder / "out.txt").write_text("mine")
+    result = sono("start", "3_1", "-o", "out.txt")
+    assert result.exit_code == 2
+    assert "out.txt exists; --force overwrites it" in result.stderr
+    assert (folder / "out.txt").read_text() == "mine"
+    assert sono("start", "3_1", "-o", "out.txt", "--force").exit_code == 0
+    assert same(folder / "out.txt", library.start("3_1"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "give either a NAME or a --braid word"),
+        (["3_1", "--braid", "1"], "give either a NAME or a --braid word"),
+        (["3-1"], "did you mean '3_1'?"),
+        (["T(0,3)"], "p and q must not be zero"),
+        (["--braid", "1 0"], "a braid generator must not be 0"),
+        (["--braid", "a b"], "give whole numbers"),
+        (["3_1", "--scramble", "x"], "'--scramble'"),
+    ],
+)
+def test_usage_errors(sono: Sono, arguments: list[str], message: str) -> None:
+    result = sono("start", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+
+
+def test_a_folder_that_is_not_there(sono: Sono) -> None:
+    result = sono("start", "3_1", "-o", "nowhere/out.txt")
+    assert result.exit_code == 1
+    assert result.stderr.startswith("sono: nowhere/out.txt: cannot be written: ")
+
+
+def test_too_large_for_the_memory(sono: Sono) -> None:
+    result = sono("start", "T(2,1000000000000)")
+    assert result.exit_code == 1
+    assert result.stderr == "sono: this needs more memory than there is\n"
