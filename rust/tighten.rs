@@ -46,17 +46,22 @@ use crate::procedures::least_index_distance;
 use crate::rope::{Rope, Violation};
 use crate::settings::Settings;
 
-/// Tolerance while collapsing, and at the end of the anneal.
+/// Tolerance while collapsing, while the jammed rope is then eased, and at the end of the anneal.
 const COLLAPSED: f64 = 0.3;
+const EASED: f64 = 0.03;
 const ANNEALED: f64 = 3e-3;
 /// Share of its length that a collapsing rope loses in a sweep.
 const COLLAPSE_RATE: f64 = 3e-3;
+/// Thickness in excess of 1 at which a collapsing rope is scaled down.
+const SLACK: f64 = 0.02;
 /// A rope has jammed when it loses less than this share of its length in so many sweeps.
 const JAMMED: f64 = 2e-3;
 const JAM_SWEEPS: u64 = 2000;
 /// Edge length below which a collapsing rope gives up beads, and the one it then has.
 const TOO_FINE: f64 = 0.35;
 const LOOSE: f64 = 0.5;
+/// Sweeps in which a jammed rope is eased.
+const EASE_SWEEPS: u64 = 1000;
 /// Sweeps between two looks at what the rope measures.
 const BURST: u64 = 1000;
 
@@ -166,7 +171,6 @@ impl Tightener {
 
     fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
         let best = Best { curve: rope.curve().clone(), valid: false, l_c: f64::INFINITY };
-        let length = rope.length();
         let mut tightener = Self {
             settings,
             stage,
@@ -178,7 +182,7 @@ impl Tightener {
             met: Violation::default(),
             outcome: Outcome::Running,
             best,
-            length,
+            length: f64::INFINITY,
         };
         tightener.keep_best();
         tightener
@@ -213,12 +217,15 @@ impl Tightener {
         if self.sweeps.is_multiple_of(10) {
             self.rope.share_tension();
         }
-        if self.stage == Stage::Collapse {
-            self.thin_out();
+        if self.stage == Stage::Collapse && self.sweeps.is_multiple_of(100) {
+            self.take_in_slack();
         }
         if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
             let valid = self.keep_best();
             self.outcome = self.judge(valid);
+            if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
+                self.best.curve = self.rope.curve().clone();
+            }
         }
         self.outcome
     }
@@ -241,7 +248,8 @@ impl Tightener {
     /// The violation tolerated at this moment.
     fn tolerance(&self) -> f64 {
         let last = match self.stage {
-            Stage::Collapse => self.first_tolerance,
+            Stage::Collapse if self.planned == u64::MAX => COLLAPSED,
+            Stage::Collapse => return EASED,
             Stage::Anneal => ANNEALED.min(self.first_tolerance),
             Stage::Settle => 0.5 * self.settings.tolerance,
         };
@@ -252,19 +260,28 @@ impl Tightener {
         (self.sweeps as f64 / self.planned as f64).min(1.)
     }
 
-    /// Takes beads out of a collapsing rope whose edges have become short.
-    fn thin_out(&mut self) {
+    /// Scales a collapsing rope down as far as its beads allow, and takes out beads that have come
+    /// close: EE alone would shorten long slack only as fast as tension diffuses along the chain.
+    fn take_in_slack(&mut self) {
+        let curve = self.rope.curve();
+        let slack = measure(curve).r_s > 1. + SLACK;
         if self.rope.dl() < TOO_FINE {
             let n = (self.rope.length() / LOOSE) as usize;
-            self.rope = Rope::new(refine(self.rope.curve(), n, 0.25));
+            self.rope = Rope::new(refine(curve, n, 0.25));
+        } else if slack {
+            self.rope = Rope::new(curve.clone());
         }
     }
 
     fn judge(&mut self, valid: bool) -> Outcome {
         match self.stage {
+            Stage::Collapse if self.sweeps >= self.planned => Outcome::Tight,
             Stage::Collapse if self.sweeps.is_multiple_of(JAM_SWEEPS) => {
-                let before = std::mem::replace(&mut self.length, self.rope.length());
-                if self.length > (1. - JAMMED) * before { Outcome::Tight } else { Outcome::Running }
+                let before = std::mem::replace(&mut self.length, self.rope.curve().length());
+                if self.length > (1. - JAMMED) * before {
+                    self.planned = self.sweeps + EASE_SWEEPS;
+                }
+                Outcome::Running
             }
             Stage::Anneal if self.sweeps >= self.planned => Outcome::Tight,
             Stage::Settle if self.sweeps >= self.planned && valid => Outcome::Tight,

@@ -77,6 +77,6 @@ def test_a_folder_that_is_not_there(sono: Sono) -> None:
 
 
 def test_too_large_for_the_memory(sono: Sono) -> None:
-    result = sono("start", "T(2,1000000000000)")
+    result = sono("start", "T(2,1000000000000000)")
     assert result.exit_code == 1
     assert result.stderr == "sono: this needs more memory than there is\n"
