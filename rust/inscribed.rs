@@ -103,11 +103,11 @@ impl Inscribed {
 /// Shares `n` vertices out to the components in proportion to their lengths, at least 3 to each.
 pub fn share_out(n: usize, lengths: &[f64]) -> Vec<usize> {
     let per_length = n as f64 / lengths.iter().sum::<f64>();
-    let mut shares: Vec<_> = lengths.iter().map(|l| ((l * per_length) as usize).max(3)).collect();
-    while shares.iter().sum::<usize>() < n {
+    let mut shares = vec![3; lengths.len()];
+    for _ in 3 * lengths.len()..n {
         let lacking = |c: usize| lengths[c] * per_length - shares[c] as f64;
-        let c = (0..shares.len()).max_by(|&a, &b| lacking(a).total_cmp(&lacking(b)));
-        shares[c.expect("a curve has components")] += 1;
+        let neediest = (0..shares.len()).max_by(|&a, &b| lacking(a).total_cmp(&lacking(b)));
+        shares[neediest.expect("a curve has components")] += 1;
     }
     shares
 }

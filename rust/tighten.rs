@@ -170,7 +170,7 @@ impl Tightener {
     }
 
     fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
-        let best = Best { curve: rope.curve().clone(), valid: false, l_c: f64::INFINITY };
+        let best = Best { curve: rope.curve().clone(), valid: false, l_c: f64::MAX };
         let mut tightener = Self {
             settings,
             stage,
@@ -182,7 +182,7 @@ impl Tightener {
             met: Violation::default(),
             outcome: Outcome::Running,
             best,
-            length: f64::INFINITY,
+            length: f64::MAX,
         };
         tightener.keep_best();
         tightener
@@ -294,7 +294,7 @@ impl Tightener {
     fn keep_best(&mut self) -> bool {
         let now = measure(self.rope.curve());
         let valid = now.dispersion.max(1. - now.r_s) <= self.settings.tolerance;
-        let l_c = now.l_c.unwrap_or(f64::INFINITY);
+        let l_c = now.l_c.unwrap_or(f64::MAX);
         if (!valid, l_c) < (!self.best.valid, self.best.l_c) {
             self.best = Best { curve: self.rope.curve().clone(), valid, l_c };
             self.best.curve.scale(1. / now.r_s);

@@ -1,0 +1,8 @@
+"""`cargo test`: the core's own tests, so that one command runs all."""
+
+import subprocess
+from pathlib import Path
+
+
+def test_cargo_test() -> None:
+    subprocess.run(["cargo", "test", "--quiet"], cwd=Path(__file__).parent.parent, check=True)

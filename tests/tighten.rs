@@ -1,0 +1,112 @@
+//! The tightening loop: valid, reproducible, resumable.
+
+mod common;
+
+use common::{finish, quick, torus};
+use glam::DVec3;
+use sono::procedures::{control_curvature, equalize_edges, least_index_distance, remove_overlaps};
+use sono::{Curve, Error, Outcome, Settings, Tightener, measure};
+
+fn loose() -> Curve {
+    finish(Tightener::collapse(&torus(2., 3., 100), quick()).unwrap()).best().clone()
+}
+
+fn tight(n: usize, settings: Settings) -> Tightener {
+    let annealed = finish(Tightener::anneal(&loose(), n, settings).unwrap());
+    finish(Tightener::settle(annealed.best(), n, settings).unwrap())
+}
+
+#[test]
+fn a_settled_rope_is_valid_and_short() {
+    let tight = tight(60, quick());
+    let status = tight.status();
+    assert_eq!(status.outcome, Outcome::Tight);
+    let m = measure(tight.best());
+    assert_eq!(m, status.best);
+    assert!(m.dispersion <= 1e-6, "{}", m.dispersion);
+    assert!((m.r_s - 1.).abs() < 1e-12, "{}", m.r_s);
+    assert!(m.l_p < 32.53 && m.l_c.unwrap() < 33.58, "{} {:?}", m.l_p, m.l_c);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_and_another_does_not() {
+    let [a, b, c] = [1, 1, 2].map(|seed| tight(40, Settings { seed, ..quick() }).best().clone());
+    assert_eq!(a, b);
+    assert_ne!(a, c);
+}
+
+#[test]
+fn a_saved_run_goes_on_as_if_it_had_never_stopped() {
+    let whole = finish(Tightener::anneal(&loose(), 50, quick()).unwrap());
+    let mut part = Tightener::anneal(&loose(), 50, quick()).unwrap();
+    for _ in 0..3333 {
+        part.step();
+    }
+    let saved = serde_json::to_string(&part).unwrap();
+    let resumed: Tightener = serde_json::from_str(&saved).unwrap();
+    assert_eq!(finish(resumed).best(), whole.best());
+}
+
+#[test]
+fn too_few_vertices_are_refused_with_a_number_that_will_do() {
+    let Err(Error::TooCoarse { needed, .. }) = Tightener::settle(&loose(), 20, quick()) else {
+        panic!("20 vertices cannot hold a trefoil")
+    };
+    assert!(Tightener::settle(&loose(), needed, quick()).is_ok());
+}
+
+#[test]
+fn settings_out_of_range_are_named() {
+    let wrong = Settings { c_1: 0.7, ..Default::default() };
+    let error = Tightener::collapse(&torus(2., 3., 60), wrong).unwrap_err();
+    assert!(error.to_string().contains("c_1 = 0.7"), "{error}");
+}
+
+#[test]
+fn the_index_rule_is_the_papers() {
+    assert_eq!(least_index_distance(0.1), (31.416f64 * 0.99875 - 1.).ceil() as usize);
+    assert_eq!(least_index_distance(1.24), 1);
+}
+
+#[test]
+fn equalizing_moves_both_ends_by_half_the_difference() {
+    let mut v = [[0., 0., 0.], [3., 0., 0.], [3., 2., 0.], [0., 2., 0.]].map(DVec3::from);
+    let worst = equalize_edges(&mut v[..], 2., 0.5, false);
+    assert_eq!(worst, 1.);
+    assert_eq!(v[0].x, 0.5);
+    let mut relaxed = v;
+    for _ in 0..200 {
+        equalize_edges(&mut relaxed[..], 2., 0.5, true);
+    }
+    assert!(equalize_edges(&mut relaxed[..], 2., 0.5, true) < 1e-12);
+}
+
+#[test]
+fn overlaps_are_removed_to_two_plus_epsilon() {
+    let mut v = [DVec3::ZERO, DVec3::X * 1.5, DVec3::X * 4.];
+    let overlap = remove_overlaps(&mut v, &[(0, 1), (1, 2)], 0.5, 0.01);
+    assert!((overlap - 0.5).abs() < 1e-15);
+    assert!((v[1].distance(v[0]) - 2.01).abs() < 1e-15);
+}
+
+#[test]
+fn corners_open_to_the_papers_angle() {
+    // A square of 40 edges: its corners turn by 90 degrees.
+    let dl = 0.5;
+    let side = |at: DVec3, along: DVec3| (0..10).map(move |i| at + along * (dl * i as f64));
+    let mut v: Vec<_> = side(DVec3::ZERO, DVec3::X)
+        .chain(side(5. * DVec3::X, DVec3::Y))
+        .chain(side(DVec3::new(5., 5., 0.), -DVec3::X))
+        .chain(side(5. * DVec3::Y, -DVec3::Y))
+        .collect();
+    let worst = control_curvature(&mut v.clone(), dl);
+    assert!((worst - (1. - dl / (2. * (0.25 * std::f64::consts::PI).sin()))).abs() < 0.05);
+    for _ in 0..2000 {
+        equalize_edges(&mut v, dl, 0.5, true);
+        control_curvature(&mut v, dl);
+    }
+    let curve = Curve::new(vec![v]).unwrap();
+    let sharpest = curve.turning_angles(0).fold(0., f64::max);
+    assert!(sharpest <= 2. * (0.5 * dl).asin() + 1e-6, "{sharpest}");
+    assert!(curve.edge_lengths(0).all(|s| (s - dl).abs() < 1e-6));
+}
