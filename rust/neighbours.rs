@@ -189,7 +189,7 @@ impl<F: FnMut(usize, usize, f64) -> f64> Search<'_, F> {
                 self.compare(left, right);
                 self.compare(right, right);
             }
-        } else if a.len().max(b.len()) <= 2 {
+        } else if a.len().max(b.len()) <= 4 {
             self.compare_vertices(&a, &b);
         } else if self.may_come_close(&a, &b) {
             if a.len() >= b.len() {

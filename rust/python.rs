@@ -152,6 +152,7 @@ impl Status {
             stage: match status.stage {
                 Stage::Collapse => "collapse",
                 Stage::Anneal => "anneal",
+                Stage::Reanneal => "reanneal",
                 Stage::Settle => "settle",
             },
             progress: status.progress,
@@ -183,6 +184,7 @@ impl Tightener {
         py.detach(|| match stage {
             "collapse" => crate::Tightener::collapse(&curve, settings),
             "anneal" => crate::Tightener::anneal(&curve, n, settings),
+            "reanneal" => crate::Tightener::reanneal(&curve, n, settings),
             _ => crate::Tightener::settle(&curve, n, settings),
         })
         .map(Self)

@@ -31,7 +31,7 @@ const LONG_LIFE: usize = 200;
 pub struct Violation {
     /// Largest overlap of two beads, 2 - r_ij.
     pub overlap: f64,
-    /// Largest |s_i/dl - 1|.
+    /// Largest |dl/s_i - 1|.
     pub dispersion: f64,
     /// Largest 1 - dl/(2 sin(theta_i/2)).
     pub curvature: f64,
@@ -106,9 +106,9 @@ impl Rope {
         for c in 0..self.dl.len() {
             let (range, dl) = (self.curve.range(c), self.dl[c]);
             let odd_first = self.age % 2 == 1;
-            let deviation = equalize_edges(self.share(range), dl, c_1, odd_first);
-            met.dispersion = met.dispersion.max(deviation / dl);
-            longest_edge = longest_edge.max(dl + deviation);
+            let (dispersion, longest) = equalize_edges(self.share(range), dl, c_1, odd_first);
+            met.dispersion = met.dispersion.max(dispersion);
+            longest_edge = longest_edge.max(longest);
         }
         met.overlap = remove_overlaps(self.curve.vertices_mut(), &self.pairs, c_2, epsilon);
         for c in 0..self.dl.len() {

@@ -4,13 +4,15 @@
 //! in P. Pieranski, "In search of ideal knots" (1998). A sweep is EE, RO, CC. After it the required
 //! edge length dl shrinks if the violations met are below the tolerance of the moment, and grows a
 //! little if they are above twice that. What the paper leaves to the experimenter who watches and
-//! adjusts is done here in three stages, each a [`Tightener`] of its own:
+//! adjusts is done here in stages, each a [`Tightener`] of its own:
 //!
 //! 1. [`Stage::Collapse`] shortens a loose rope at a fixed rate and tolerance until it jams. Its
 //!    edges are at most about half a radius long, whatever n is wanted in the end, so that no
 //!    strand fits between beads; beads are taken out as the rope gets shorter.
 //! 2. [`Stage::Anneal`] at a coarse n lowers the tolerance, and epsilon with it, geometrically from
 //!    large: beads that may overlap a lot still rearrange, and the rope leaves local minima.
+//!    [`Stage::Reanneal`] does the same from a smaller tolerance on twice the beads: enough to free
+//!    them from each other's grooves, too little to lose the shape.
 //! 3. [`Stage::Settle`] goes on at any n until dispersion and overlaps are below 1e-6.
 //!
 //! ```
@@ -62,6 +64,9 @@ const TOO_FINE: f64 = 0.35;
 const LOOSE: f64 = 0.5;
 /// Sweeps in which a jammed rope is eased.
 const EASE_SWEEPS: u64 = 1000;
+/// Largest random displacement of a coordinate. It breaks symmetries, which SONO alone would keep,
+/// and shakes beads out of each other's grooves.
+const JITTER: f64 = 0.05;
 /// Sweeps between two looks at what the rope measures.
 const BURST: u64 = 1000;
 
@@ -73,6 +78,8 @@ pub enum Stage {
     Collapse,
     /// Lowers the tolerance from large to small.
     Anneal,
+    /// The same on a refined rope, from a smaller tolerance on.
+    Reanneal,
     /// Ends with dispersion and overlaps below the final tolerance.
     Settle,
 }
@@ -143,7 +150,7 @@ impl Tightener {
     pub fn collapse(curve: &Curve, settings: Settings) -> Result<Self> {
         settings.check()?;
         let mut rope = Rope::new(rope_curve(curve)?);
-        jitter(&mut rope, 0.02, settings.seed);
+        jitter(&mut rope, JITTER, settings.seed);
         Ok(Self::new(rope, Stage::Collapse, u64::MAX, COLLAPSED, settings))
     }
 
@@ -153,9 +160,21 @@ impl Tightener {
     /// [`Error::Setting`], [`Error::TooCoarse`].
     pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         let mut rope = resampled(curve, n, settings)?;
-        jitter(&mut rope, 0.05, settings.seed);
+        jitter(&mut rope, JITTER, settings.seed);
         let planned = settings.anneal_sweeps.into();
         Ok(Self::new(rope, Stage::Anneal, planned, settings.anneal_tolerance, settings))
+    }
+
+    /// Anneals a rope that has been annealed on fewer vertices.
+    ///
+    /// # Errors
+    /// [`Error::Setting`], [`Error::TooCoarse`].
+    pub fn reanneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
+        let mut rope = resampled(curve, n, settings)?;
+        jitter(&mut rope, JITTER, settings.seed);
+        let planned = u64::from(settings.anneal_sweeps.div_ceil(2));
+        let tolerance = settings.anneal_tolerance / 6.;
+        Ok(Self::new(rope, Stage::Reanneal, planned, tolerance, settings))
     }
 
     /// Settles a rope on `n` vertices in all, starting at a tolerance of a coarser one's roughness.
@@ -214,7 +233,7 @@ impl Tightener {
             None => self.undone += 1,
         }
         self.sweeps += 1;
-        if self.sweeps.is_multiple_of(10) {
+        if self.sweeps.is_multiple_of(10) && self.rope.curve().components() > 1 {
             self.rope.share_tension();
         }
         if self.stage == Stage::Collapse && self.sweeps.is_multiple_of(100) {
@@ -250,7 +269,7 @@ impl Tightener {
         let last = match self.stage {
             Stage::Collapse if self.planned == u64::MAX => COLLAPSED,
             Stage::Collapse => return EASED,
-            Stage::Anneal => ANNEALED.min(self.first_tolerance),
+            Stage::Anneal | Stage::Reanneal => ANNEALED.min(self.first_tolerance),
             Stage::Settle => 0.5 * self.settings.tolerance,
         };
         self.first_tolerance * (last / self.first_tolerance).powf(self.progress())
@@ -283,7 +302,7 @@ impl Tightener {
                 }
                 Outcome::Running
             }
-            Stage::Anneal if self.sweeps >= self.planned => Outcome::Tight,
+            Stage::Anneal | Stage::Reanneal if self.sweeps >= self.planned => Outcome::Tight,
             Stage::Settle if self.sweeps >= self.planned && valid => Outcome::Tight,
             Stage::Settle if self.sweeps >= 2 * self.planned => Outcome::Stuck,
             _ => Outcome::Running,
@@ -337,7 +356,7 @@ fn resampled(curve: &Curve, n: usize, settings: Settings) -> Result<Rope> {
     Ok(rope)
 }
 
-/// Breaks symmetries, which SONO would keep, and makes the seed count.
+/// Displaces each bead at random.
 fn jitter(rope: &mut Rope, size: f64, seed: u64) {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let mut coordinate = || rng.random_range(-size..size);

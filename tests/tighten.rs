@@ -71,14 +71,15 @@ fn the_index_rule_is_the_papers() {
 #[test]
 fn equalizing_moves_both_ends_by_half_the_difference() {
     let mut v = [[0., 0., 0.], [3., 0., 0.], [3., 2., 0.], [0., 2., 0.]].map(DVec3::from);
-    let worst = equalize_edges(&mut v[..], 2., 0.5, false);
-    assert_eq!(worst, 1.);
+    let (worst, longest) = equalize_edges(&mut v[..], 2., 0.5, false);
+    assert!((worst - 1. / 3.).abs() < 1e-15);
+    assert_eq!(longest, 3.);
     assert_eq!(v[0].x, 0.5);
     let mut relaxed = v;
     for _ in 0..200 {
         equalize_edges(&mut relaxed[..], 2., 0.5, true);
     }
-    assert!(equalize_edges(&mut relaxed[..], 2., 0.5, true) < 1e-12);
+    assert!(equalize_edges(&mut relaxed[..], 2., 0.5, true).0 < 1e-12);
 }
 
 #[test]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 __all__ = ["CurveError", "Measures", "Status", "Tightener", "default_settings", "measure", "refine"]
 
 _Components: TypeAlias = list[NDArray[np.float64]]
-_Stage: TypeAlias = Literal["collapse", "anneal", "settle"]
+_Stage: TypeAlias = Literal["collapse", "anneal", "reanneal", "settle"]
 
 class CurveError(ValueError):
     """A curve that cannot be used; `args` are the message, the component and the vertex (or None)."""

@@ -1,7 +1,8 @@
 """From any closed curve to tight ones: the ladder of n, and the loop that runs each of its rungs.
 
-A `Run` collapses the curve, then climbs for each n asked for: anneal and settle at a coarse n, where that is
-cheap, then refine the inscribed knot to twice the vertices and settle again, until n is reached. Rust does
+A `Run` collapses the curve, then climbs for each n asked for: anneal at a coarse n, where beads rearrange most
+freely, refine the inscribed knot to twice the vertices and anneal a little more, then settle, refine and settle
+again until n is reached. Rust does
 the work in slices of a tenth of a second; between slices a caller may show progress, save or stop.
 """
 
@@ -20,13 +21,16 @@ from sono import _core
 from sono._core import Measures, Status, Tightener
 
 Curve = list[NDArray[np.float64]]
-Stage = Literal["collapse", "anneal", "settle"]
+Stage = Literal["collapse", "anneal", "reanneal", "settle"]
 
 SLICE = 0.1
 """Seconds between two looks at the run."""
 
-COARSE = 0.5
-"""Edge length below which a rope is fine enough to be refined from, in radii."""
+COARSE = 0.7
+"""Edges of a rope that is annealed are at most so long, and at least half of it, where n allows; in radii."""
+
+FINE = 0.5
+"""Edges of a tight rope that is refined to the next n are at most so long; in radii."""
 
 
 class Stopped(Exception):  # noqa: N818 - no error, a request that was followed
@@ -235,11 +239,13 @@ class Run:
         length = _core.measure(self.loose).l_p
         n = self.targets[0]
         have = sum(map(len, self.curve))
-        climbing = self.curve is not self.loose and length / have < COARSE
+        climbing = self.curve is not self.loose and length / have < FINE
         levels = [n]
         while levels[0] // 2 > have if climbing else 2 * length / levels[0] < COARSE:
             levels.insert(0, levels[0] // 2)
         if climbing:
             return [("settle", level) for level in levels]
         self.curve = self.loose
-        return [("anneal", levels[0]), *(("settle", level) for level in levels)]
+        coarsest, *finer = levels
+        anneals: list[tuple[Stage, int]] = [("anneal", coarsest), *(("reanneal", n) for n in finer[:1])]
+        return anneals + [("settle", level) for level in finer or [coarsest]]
