@@ -23,8 +23,8 @@ const THICKEST_SKIN: f64 = 0.25;
 
 /// A list that lasts fewer sweeps gets a thicker skin, any other a thinner one; the thinner the skin
 /// the shorter the list. One that lasts so long is made anew to learn whether a thinner one will do.
-const SHORT_LIFE: usize = 60;
-const LONG_LIFE: usize = 200;
+const SHORT_LIFE: usize = 150;
+const LONG_LIFE: usize = 500;
 
 /// What a sweep met before it corrected it, R = 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

@@ -73,6 +73,13 @@ fn a_fold_has_no_thickness_and_no_bound() {
     assert!(m.r_s < 1e-8 && m.l_c.is_none());
 }
 
+#[test]
+fn components_that_share_a_vertex_have_no_thickness() {
+    let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y].to_vec();
+    let touching = vec![triangle.clone(), triangle.iter().map(|v| -v).collect()];
+    assert_eq!(measure(&Curve::new(touching).unwrap()).sr, 0.);
+}
+
 /// A closed random walk of unequal steps, perhaps with a second component.
 fn random_curve() -> impl Strategy<Value = Curve> {
     let component = (4usize..80).prop_flat_map(|n| {
