@@ -46,7 +46,7 @@ def test_version(sono: Sono) -> None:
 
 
 def test_public_names() -> None:
-    assert sorted(package._HOMES) == sorted(package.__all__)
+    assert sorted(package._HOMES) == sorted(package.__all__) == dir(package)
     for name in package.__all__:
         assert getattr(package, name).__name__ == name
     with pytest.raises(AttributeError, match="no attribute 'loosen'"):

@@ -1,9 +1,9 @@
 """From any closed curve to tight ones: the ladder of n, and the loop that runs each of its rungs.
 
-A `Run` collapses the curve, then climbs for each n asked for: anneal at a coarse n, where beads rearrange most
-freely, refine the inscribed knot to twice the vertices and anneal a little more, then settle, refine and settle
-again until n is reached. Rust does
-the work in slices of a tenth of a second; between slices a caller may show progress, save or stop.
+A `Run` collapses the curve, then climbs for each n asked for: anneal at a coarse n, where beads rearrange
+most freely, refine the inscribed knot to twice the vertices and anneal a little more, then settle, refine and
+settle again until n is reached. Rust does the work in slices of a tenth of a second; between slices a caller
+may show progress, save or stop.
 """
 
 import json
@@ -158,7 +158,7 @@ class Run:
         check_settings(self.settings)
 
     def tighten(self, watch: Callable[[Progress], None] = lambda _: None) -> Tight:
-        """Tighten at the first target; `watch` is called after each slice and may raise `Stopped`.
+        """Tighten at the first target; `watch` is called between slices and may raise `Stopped`.
 
         Called once more it gives the same again. Raises `CurveError` for a curve that cannot be tightened,
         or not with so few vertices.
@@ -211,9 +211,9 @@ class Run:
             start = time.perf_counter()
             status = self.tightener.advance(SLICE)
             self.seconds += time.perf_counter() - start
-            watch(Progress(stage, n or status.best.n, self.targets[0], status))
             if status.outcome != "running":
                 return status.outcome
+            watch(Progress(stage, n or status.best.n, self.targets[0], status))
 
     def _leave(self) -> None:
         """Take over what the first rung has reached, and plan the next ones if there are none."""

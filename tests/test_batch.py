@@ -1,0 +1,192 @@
+"""Jobs of a batch: rows as they come, checkpoints as they should be, disks full at the worst time."""
+
+import errno
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sono import batch, formats, library
+from sono.batch import Job
+from sono.formats import FormatError
+from sono.pipeline import Progress, Stopped
+
+pytestmark = pytest.mark.usefixtures("slices")
+
+QUICK = {"anneal_sweeps": 500, "settle_sweeps": 100, "tolerance": 1e-2, "seed": 0}
+
+
+@pytest.fixture
+def job(folder: Path) -> Job:
+    """A job with two targets and a checkpoint."""
+    return Job("3_1.txt", "knot", {40: "40.txt", 60: "60.txt"}, QUICK, checkpoint=Path("knot.json"))
+
+
+def nothing(progress: Progress) -> None:
+    """Watch a run, and let it go on."""
+
+
+class StopAt:
+    """Stops a run at the first look in a certain stage on the way to a certain n."""
+
+    def __init__(self, stage: str, target: int) -> None:
+        self.where = (stage, target)
+
+    def __call__(self, progress: Progress) -> None:
+        if (progress.stage, progress.target) == self.where:
+            raise Stopped("enough")
+
+
+def test_rows_come_when_their_files_are_written(job: Job) -> None:
+    results = batch.run(job, nothing)
+    first = next(results)
+    assert first.row
+    assert (first.row["n"], first.row["file"], first.row["status"], first.trouble) == (
+        40,
+        "40.txt",
+        "tight",
+        None,
+    )
+    assert Path("40.txt").exists()
+    assert not Path("60.txt").exists()
+    assert [result.row and result.row["n"] for result in results] == [60]
+    assert not Path("knot.json").exists()
+
+
+@pytest.mark.parametrize("target", [40, 60])
+@pytest.mark.parametrize("stage", ["collapse", "anneal", "settle"])
+def test_resumed_after_any_stage(job: Job, stage: str, target: int) -> None:
+    whole = {n: f"whole{n}.txt" for n in job.outputs}
+    list(batch.run(replace(job, outputs=whole, checkpoint=None), nothing))
+    *_, last = batch.run(job, StopAt(stage, target))
+    if stage == "collapse" and target == 60:
+        assert last.trouble is None  # it collapses but once
+        return
+    assert last.trouble
+    assert last.trouble.startswith("knot: enough; the best state so far, n = ")
+    assert last.trouble.endswith(f"is in {target}.best.txt; --resume goes on from here")
+    rows = [result.row for result in batch.run(replace(job, resume=True), nothing)]
+    assert [row and row["status"] for row in rows] == ["tight", "tight"]
+    for n in job.outputs:
+        assert Path(f"{n}.txt").read_bytes() == Path(f"whole{n}.txt").read_bytes()
+
+
+def test_killed_between_result_and_checkpoint(job: Job) -> None:
+    next(batch.run(job, nothing))
+    assert Path("knot.json").exists()
+    written = Path("40.txt").read_bytes()
+    rows = [result.row for result in batch.run(replace(job, resume=True), nothing)]
+    assert [row and row["n"] for row in rows] == [40, 60]
+    assert Path("40.txt").read_bytes() == written
+
+
+def test_a_lost_result_is_made_again(job: Job) -> None:
+    list(batch.run(job, StopAt("settle", 60)))
+    written = Path("40.txt").read_bytes()
+    Path("40.txt").unlink()
+    assert all(result.trouble is None for result in batch.run(replace(job, resume=True), nothing))
+    assert Path("40.txt").read_bytes() == written
+
+
+def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "SAVE_EVERY", 0)
+    stages = set()
+
+    def look(progress: Progress) -> None:
+        stages.add(json.loads(Path("knot.json").read_text())["rungs"][0][0])
+
+    list(batch.run(job, look))
+    assert {"collapse", "anneal", "settle"} <= stages
+
+
+@contextmanager
+def full(path: Any) -> Iterator[None]:
+    """Stands in for `atomic_text` on a full disk."""
+    raise OSError(errno.ENOSPC, "No space left on device")
+    yield
+
+
+def test_a_disk_that_fills_up(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fill_and_stop(progress: Progress) -> None:
+        if progress.target == 60:
+            monkeypatch.setattr(formats, "atomic_text", full)
+            StopAt("settle", 60)(progress)
+
+    first, second = batch.run(job, fill_and_stop)
+    assert first.trouble is None
+    assert second.row
+    assert (second.row["status"], second.row["file"]) == ("stopped", None)
+    assert second.trouble == (
+        "knot: enough; 60.best.txt: cannot be written: No space left on device"
+        "; knot.json: cannot be written: No space left on device"
+    )
+    assert Path("knot.json").exists()  # as it was at the beginning
+    monkeypatch.undo()
+
+
+def test_a_disk_that_is_full_for_a_while(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "SAVE_EVERY", 0)
+
+    def full_during_the_anneal(progress: Progress) -> None:
+        if progress.stage == "anneal":
+            monkeypatch.setattr(formats, "atomic_text", full)
+        else:
+            monkeypatch.setattr(formats, "atomic_text", formats.files.atomic_text)
+
+    assert [result.trouble for result in batch.run(job, full_during_the_anneal)] == [None, None]
+
+
+def test_too_thin_a_curve_fails_as_a_whole(job: Job) -> None:
+    thin = [np.array([[0, 0, 0], [2, 2, 0], [2, 0, 1e-8], [0, 2, 1e-8]])]
+    formats.write("3_1.txt", thin)
+    (result,) = batch.run(job, nothing)
+    assert result.row is None
+    assert result.trouble
+    assert result.trouble.startswith("3_1.txt: the curve comes so close to itself")
+
+
+def test_the_row_of_a_coarse_rope_is_one_for_the_next(job: Job) -> None:
+    few, enough = batch.run(replace(job, outputs={12: "12.txt", 60: "60.txt"}), nothing)
+    assert few.row is None
+    assert few.trouble
+    assert "12 vertices are too few" in few.trouble
+    assert enough.trouble is None
+    assert not Path("12.txt").exists()
+
+
+def test_files_of_a_job(job: Job) -> None:
+    assert job.files() == ["40.txt", "60.txt", "knot.json"]
+    assert Job("-", "stdin", {40: "-"}, QUICK).files() == []
+
+
+def test_measured_says_where(folder: Path) -> None:
+    formats.write("crossing.txt", [np.array([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])], ["8"])
+    with pytest.raises(FormatError, match=r"^crossing\.txt:2: the curve crosses itself"):
+        batch.measured("crossing.txt")
+
+
+def test_100_000_vertices(folder: Path) -> None:
+    t = 2 * np.pi * np.arange(100_000) / 100_000
+    rho = 2 + 0.8 * np.cos(3 * t)
+    knot = np.column_stack([rho * np.cos(2 * t), rho * np.sin(2 * t), 0.8 * np.sin(3 * t)])
+    formats.write("fine.txt", [knot])
+    _, measures = batch.measured("fine.txt")
+    assert measures.n == 100_000
+    (result,) = batch.run(Job("fine.txt", "fine", {60: "60.txt"}, QUICK), nothing)
+    assert result.row
+    assert result.row["status"] == "tight"
+
+
+@pytest.mark.parametrize("name", ["circle", "triangle"])
+def test_the_simplest_curves(folder: Path, name: str) -> None:
+    triangle = [np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])]
+    formats.write("flat.txt", library.start("unknot") if name == "circle" else triangle)
+    (result,) = batch.run(Job("flat.txt", name, {40: "40.txt"}, QUICK), nothing)
+    assert result.trouble is None
+    assert result.row
+    assert result.row["l_p"] == pytest.approx(2 * np.pi, rel=0.01)

@@ -1,0 +1,110 @@
+"""The compiled module: that the stubs say what it has, and that the interpreter is free while it works."""
+
+import json
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sono import _core, library
+
+ENDLESS = json.dumps({"anneal_sweeps": 4_000_000_000})
+
+
+def test_stubs_match_the_module() -> None:
+    source = Path(_core.__file__).parents[1]
+    command = [sys.executable, "-m", "mypy.stubtest", "--ignore-disjoint-bases", "sono._core"]
+    done = subprocess.run(command, cwd=source, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def tightener(settings: str = ENDLESS) -> _core.Tightener:
+    return _core.Tightener(library.start("3_1"), "anneal", 60, settings)
+
+
+def test_other_threads_run_meanwhile() -> None:
+    rope = tightener()
+    advancing, done = threading.Event(), threading.Event()
+    ticks = 0
+
+    def tick() -> None:
+        nonlocal ticks
+        advancing.wait()
+        while not done.is_set():
+            time.sleep(0.001)
+            ticks += 1
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    advancing.set()
+    status = rope.advance(0.5)
+    meanwhile = ticks
+    done.set()
+    thread.join()
+    assert status.outcome == "running"
+    assert status.sweeps > 0
+    # Were the interpreter held, one tick might slip in before the work and none during it.
+    assert meanwhile > 3
+
+
+def test_two_ropes_at_the_same_time_are_as_one_after_the_other() -> None:
+    settings = json.dumps({"anneal_sweeps": 2000})
+    ropes = [tightener(settings) for _ in range(3)]
+
+    def work(rope: _core.Tightener) -> None:
+        while rope.advance(0.01).outcome == "running":
+            pass
+
+    threads = [threading.Thread(target=work, args=[rope]) for rope in ropes[1:]]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    work(ropes[0])
+    assert ropes[0].state() == ropes[1].state() == ropes[2].state()
+
+
+def test_state_is_all_there_is() -> None:
+    rope = tightener()
+    rope.advance(0.01)
+    twin = _core.Tightener.restore(rope.state())
+    assert twin.state() == rope.state()
+    assert np.array_equal(twin.best()[0], rope.best()[0])
+    assert twin.advance(0).sweeps == rope.advance(0).sweeps
+
+
+@pytest.mark.parametrize("state", ["", "{}", "[1]", "null"])
+def test_a_state_that_is_none(state: str) -> None:
+    with pytest.raises(ValueError, match="not a state of a Tightener"):
+        _core.Tightener.restore(state)
+
+
+@pytest.mark.parametrize("seconds", [-1.0, float("nan"), float("inf"), 1e300])
+def test_a_time_that_is_none(seconds: float) -> None:
+    with pytest.raises(ValueError, match="seconds"):
+        tightener().advance(seconds)
+
+
+def test_errors_hold_the_place() -> None:
+    curve = [np.eye(3), np.array([[0, 0, 5.0], [1, 0, 5], [1, 0, 5]])]
+    with pytest.raises(_core.CurveError) as caught:
+        _core.measure(curve)
+    message, component, vertex = caught.value.args
+    assert "coincide" in message
+    assert (component, vertex) == (1, 1)
+    assert issubclass(_core.CurveError, ValueError)
+
+
+def test_the_shape_must_be_right() -> None:
+    with pytest.raises(ValueError, match=r"\(n, 3\)"):
+        _core.measure([np.zeros((4, 2))])
+
+
+def test_refine_gives_the_number_asked_for() -> None:
+    fine = _core.refine(library.start("Hopf"), 200)
+    assert sum(map(len, fine)) == 200
+    assert _core.measure(fine).components == 2

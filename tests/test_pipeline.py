@@ -1,0 +1,186 @@
+"""The library: what `measure` and `tighten` take and give, and runs that stop, save and go on."""
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sono
+from sono.pipeline import Progress, Run, Stopped, as_curve, check_settings, default_settings
+
+QUICK = {"anneal_sweeps": 500, "settle_sweeps": 100, "tolerance": 1e-2}
+
+HEXAGON = [[math.cos(i * math.pi / 3), math.sin(i * math.pi / 3), 0.0] for i in range(6)]
+
+
+@pytest.mark.parametrize(
+    "vertices",
+    [HEXAGON, [HEXAGON], np.array(HEXAGON), [np.array(HEXAGON)], np.array([HEXAGON])],
+    ids=["list", "lists", "array", "arrays", "stacked"],
+)
+def test_measure_takes_anything_like_arrays(vertices: Any) -> None:
+    measures = sono.measure(vertices)
+    assert (measures.n, measures.components) == (6, 1)
+    assert measures.l_p == pytest.approx(6 / math.sqrt(0.75), abs=1e-12)
+
+
+def test_any_kind_of_array(tmp_path_factory: pytest.TempPathFactory) -> None:
+    exact = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 1], [0, 2, 0]])
+    expected = sono.measure(exact.astype(np.float64)).length
+    padded = np.zeros((8, 6))
+    padded[::2, ::2] = exact
+    for array in (exact, exact.astype(np.float32), np.asfortranarray(exact), padded[::2, ::2]):
+        assert sono.measure(array).length == expected
+
+
+def test_components_of_different_lengths() -> None:
+    curve = as_curve([np.array(HEXAGON), 9 * np.array(HEXAGON[::2])])
+    assert [component.shape for component in curve] == [(6, 3), (3, 3)]
+    assert sono.measure(curve).components == 2
+
+
+@pytest.mark.parametrize(
+    "vertices", [[], [1.0, 2.0], [[0, 0], [1, 0], [0, 1]], [HEXAGON, [[0, 1]]], "knot", 3]
+)
+def test_what_is_no_curve(vertices: Any) -> None:
+    with pytest.raises((ValueError, TypeError)):
+        as_curve(vertices)
+
+
+def test_the_callers_arrays_stay_as_they_are() -> None:
+    curve = sono.start("3_1")
+    before = [component.copy() for component in curve]
+    sono.tighten(curve, 40, settings=QUICK)
+    assert all(map(np.array_equal, curve, before))
+
+
+@pytest.mark.parametrize(
+    ("third", "message"),
+    [([math.nan, 0, 0], "vertex 2 of component 0 is not finite"), ([1, 0, 0], "coincide")],
+)
+def test_curve_errors_say_where(third: list[float], message: str) -> None:
+    with pytest.raises(sono.CurveError, match=message):
+        sono.measure(np.array([[0, 0, 0], [1, 0, 0], third, [0, 1, 0]]))
+
+
+def test_tighten_gives_arrays_and_what_they_measure() -> None:
+    tight = sono.tighten(sono.start("Hopf"), n=60, settings=QUICK)
+    assert [component.dtype for component in tight.curve] == [np.dtype(float)] * 2
+    assert sum(map(len, tight.curve)) == tight.measures.n == 60
+    assert tight.converged
+    measures = sono.measure(tight.curve)
+    assert (measures.l_p, measures.l_c) == (tight.measures.l_p, tight.measures.l_c)
+    assert measures.r_s == pytest.approx(1, abs=1e-12)
+    assert tight.sweeps > 0
+    assert tight.seconds > 0
+
+
+@pytest.mark.parametrize("factor", [1e-9, 1e-3, 1e6])
+def test_any_scale_and_place(factor: float) -> None:
+    curve = [factor * (component + 10) for component in sono.start("3_1")]
+    assert 32.4 < sono.tighten(curve, 60, settings=QUICK).measures.l_p < 33
+
+
+def test_numbers_from_numpy() -> None:
+    with_ints = sono.tighten(sono.start("3_1"), 40, seed=3, settings=QUICK)
+    with_numpy = sono.tighten(sono.start("3_1"), np.int64(40), seed=np.uint8(3), settings=QUICK)  # type: ignore[arg-type]
+    assert np.array_equal(with_ints.curve, with_numpy.curve)
+    with pytest.raises(TypeError):
+        sono.tighten(sono.start("3_1"), 40.5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("n", "settings", "message"),
+    [
+        (2, {}, "n = 2 is too small; 3 vertices for each component make 3"),
+        (40, {"speed": 1}, "unknown setting 'speed'; the settings are: c_1, "),
+        (40, {"c_1": 0.7}, "c_1 = 0.7 is out of range"),
+        (40, {"c_1": math.nan}, "not JSON compliant"),
+        (40, {"anneal_sweeps": -1}, "expected u32"),
+    ],
+)
+def test_wrong_values(n: int, settings: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        sono.tighten(sono.start("3_1"), n, settings=settings)
+
+
+def test_default_settings_are_right() -> None:
+    check_settings(default_settings())
+
+
+def test_too_few_vertices_for_the_knot() -> None:
+    with pytest.raises(sono.CurveError, match="12 vertices are too few"):
+        sono.tighten(sono.start("3_1"), 12, settings=QUICK)
+
+
+def test_time_limit_gives_the_best_so_far() -> None:
+    tight = sono.tighten(sono.start("3_1"), 50_000, time_limit=1e-9)
+    assert not tight.converged
+    assert tight.measures.n < 50_000
+    assert tight.measures.l_p > 32
+
+
+@pytest.mark.usefixtures("slices")
+def test_keyboard_interrupt_passes_through() -> None:
+    def interrupt(progress: Progress) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sono.tighten(sono.start("3_1"), 40, watch=interrupt)
+
+
+@pytest.mark.usefixtures("slices")
+def test_progress_climbs_to_the_target() -> None:
+    seen: list[Progress] = []
+    sono.tighten(sono.start("3_1"), 160, settings=QUICK, watch=seen.append)
+    assert {progress.target for progress in seen} == {160}
+    stages = [progress.stage for progress in seen]
+    assert stages == sorted(stages, key=["collapse", "anneal", "reanneal", "settle"].index)
+    assert [progress.n for progress in seen if progress.stage == "settle"][-1] == 160
+    assert all(0 <= progress.status.progress <= 1 for progress in seen)
+
+
+@pytest.mark.usefixtures("slices")
+def test_a_run_saved_at_each_slice_gives_the_same() -> None:
+    stops = 0
+
+    def stop(progress: Progress) -> None:
+        nonlocal stops
+        stops += 1
+        raise Stopped
+
+    whole = Run(sono.start("3_1"), [40, 60, 130], QUICK)
+    parts = Run(sono.start("3_1"), [40, 60, 130], QUICK)
+    while whole.targets:
+        expected = whole.tighten()
+        tight = None
+        while tight is None:
+            try:
+                tight = parts.tighten(stop)
+            except Stopped:
+                parts = Run.restore(json.loads(json.dumps(parts.state())))
+        assert (tight.sweeps, tight.converged) == (expected.sweeps, expected.converged)
+        assert all(map(np.array_equal, tight.curve, expected.curve))
+        whole.next_target()
+        parts.next_target()
+    assert stops > 10
+
+
+def test_a_reached_target_is_reached_again_at_once() -> None:
+    run = Run(sono.start("3_1"), [60, 40, 60], QUICK)
+    assert run.targets == [40, 60]
+    first = run.tighten()
+    again = Run.restore(json.loads(json.dumps(run.state()))).tighten()
+    assert np.array_equal(first.curve, again.curve)
+    assert (first.sweeps, first.converged) == (again.sweeps, again.converged)
+
+
+def test_a_target_out_of_reach_can_be_left() -> None:
+    run = Run(sono.start("3_1"), [12, 60], QUICK)
+    with pytest.raises(sono.CurveError):
+        run.tighten()
+    run.next_target()
+    direct = sono.tighten(sono.start("3_1"), 60, settings=QUICK)
+    assert np.array_equal(run.tighten().curve, direct.curve)
