@@ -20,6 +20,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
+/// Coordinates beyond, and edges below, are refused: their powers must neither over- nor underflow.
+const FURTHEST: f64 = 1e60;
+const SHORTEST: f64 = 1e-60;
+
 /// One or more closed polygons in space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
@@ -29,8 +33,8 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A curve from its components' vertices, checked: at least 3 vertices each, all finite, no
-    /// two consecutive ones equal.
+    /// A curve from its components' vertices, checked: at least 3 vertices each, all
+    /// coordinates within 1e60, all edges at least 1e-60 long.
     ///
     /// # Errors
     /// [`Error::Empty`], [`Error::TooFewVertices`], [`Error::NotFinite`], [`Error::Coincident`].
@@ -152,10 +156,10 @@ fn check_component(component: usize, vertices: &[DVec3]) -> Result<()> {
     }
     for (vertex, v) in vertices.iter().enumerate() {
         let next = (vertex + 1) % n;
-        if !v.length_squared().is_finite() {
+        if !v.is_finite() || v.abs().max_element() > FURTHEST {
             return Err(Error::NotFinite { component, vertex });
         }
-        if *v == vertices[next] {
+        if v.distance(vertices[next]) < SHORTEST {
             return Err(Error::Coincident { component, vertex, next });
         }
     }

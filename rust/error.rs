@@ -16,15 +16,17 @@ pub enum Error {
         /// How many vertices it has.
         n: usize,
     },
-    /// A coordinate is NaN or infinite, or so large or small that its square is.
-    #[error("vertex {vertex} of component {component} is not finite")]
+    /// A coordinate is NaN, infinite, or beyond 1e60.
+    #[error(
+        "vertex {vertex} of component {component} is not finite, or beyond 1e60; rescale the curve"
+    )]
     NotFinite {
         /// Which component.
         component: usize,
         /// Which vertex of it.
         vertex: usize,
     },
-    /// Two consecutive vertices coincide, so that the edge between them has no direction.
+    /// Two consecutive vertices coincide, or all but do, so that the edge between them has no direction.
     #[error("vertices {vertex} and {next} of component {component} coincide; remove one of them")]
     Coincident {
         /// Which component.
@@ -58,10 +60,11 @@ pub enum Error {
         /// The largest number of beads that is tried.
         limit: usize,
     },
-    /// The edge length reached sqrt 2 R: beads that far apart let strands through.
+    /// Edges so long that even neighbouring beads would have to be 2 R apart: see
+    /// [`crate::procedures::least_index_distance`].
     #[error(
         "{n} vertices are too few: the edges of this knot would be {dl:.2} R long and must stay \
-         below 1.4 R; ask for at least {needed}"
+         below 1.2 R; ask for at least {needed}"
     )]
     TooCoarse {
         /// The number of vertices that was asked for.

@@ -189,7 +189,7 @@ impl Tightener {
     }
 
     fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
-        let best = Best { curve: rope.curve().clone(), valid: false, l_c: f64::MAX };
+        let best = Best { curve: at_unit_thickness(rope.curve()), valid: false, l_c: f64::MAX };
         let mut tightener = Self {
             settings,
             stage,
@@ -243,7 +243,7 @@ impl Tightener {
             let valid = self.keep_best();
             self.outcome = self.judge(valid);
             if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
-                self.best.curve = self.rope.curve().clone();
+                self.best.curve = at_unit_thickness(self.rope.curve());
             }
         }
         self.outcome
@@ -315,9 +315,7 @@ impl Tightener {
         let valid = now.dispersion.max(1. - now.r_s) <= self.settings.tolerance;
         let l_c = now.l_c.unwrap_or(f64::MAX);
         if (!valid, l_c) < (!self.best.valid, self.best.l_c) {
-            self.best = Best { curve: self.rope.curve().clone(), valid, l_c };
-            self.best.curve.scale(1. / now.r_s);
-            self.best.curve.centre();
+            self.best = Best { curve: at_unit_thickness(self.rope.curve()), valid, l_c };
         }
         valid
     }
@@ -354,6 +352,14 @@ fn resampled(curve: &Curve, n: usize, settings: Settings) -> Result<Rope> {
         return Err(Error::TooCoarse { n, dl, needed });
     }
     Ok(rope)
+}
+
+/// The same shape with R_s = 1 and its centre at the origin.
+fn at_unit_thickness(curve: &Curve) -> Curve {
+    let mut curve = curve.clone();
+    curve.scale(1. / measure(&curve).r_s);
+    curve.centre();
+    curve
 }
 
 /// Displaces each bead at random.
