@@ -92,6 +92,13 @@ impl Rope {
         self.dl.iter_mut().for_each(|dl| *dl *= factor);
     }
 
+    /// Scales the rope's shape and length, not its thickness, by a factor near 1.
+    pub fn scale(&mut self, factor: f64) {
+        self.curve.scale(factor);
+        self.stretch(factor);
+        self.list_neighbours();
+    }
+
     /// Moves each bead by `step(i)`, which must be well below 1 R.
     pub fn displace(&mut self, mut step: impl FnMut() -> DVec3) {
         self.curve.vertices_mut().iter_mut().for_each(|v| *v += step());

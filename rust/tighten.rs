@@ -54,6 +54,8 @@ const EASED: f64 = 0.03;
 const ANNEALED: f64 = 3e-3;
 /// Share of its length that a collapsing rope loses in a sweep.
 const COLLAPSE_RATE: f64 = 3e-3;
+/// Overlap and curvature below which it is scaled down too, by as much: they are soon removed.
+const LIGHT: f64 = 0.1;
 /// Thickness in excess of 1 at which a collapsing rope is scaled down.
 const SLACK: f64 = 0.02;
 /// A rope has jammed when it loses less than this share of its length in so many sweeps.
@@ -289,6 +291,8 @@ impl Tightener {
             self.rope = Rope::new(refine(curve, n, 0.25));
         } else if slack {
             self.rope = Rope::new(curve.clone());
+        } else if self.met.overlap.max(self.met.curvature) < LIGHT {
+            self.rope.scale(1. - LIGHT);
         }
     }
 
