@@ -28,7 +28,8 @@ pub fn equalize_edges(v: &mut [DVec3], dl: f64, c_1: f64, odd_first: bool) -> (f
     let (mut worst, mut longest) = (0f64, 0f64);
     let mut equalize = |from: &mut DVec3, to: &mut DVec3| {
         let edge = *to - *from;
-        let squared = edge.length_squared();
+        // Two beads in one place stay there: there is no direction to move them in.
+        let squared = edge.length_squared().max(f64::MIN_POSITIVE);
         longest = longest.max(squared);
         let lack = inverse_root(squared * per_square - 1.);
         let shift = (c_1 * lack) * edge;
@@ -65,7 +66,7 @@ pub fn remove_overlaps(v: &mut [DVec3], pairs: &[(u32, u32)], c_2: f64, epsilon:
     for &(i, j) in pairs {
         let (i, j) = (i as usize, j as usize);
         let apart = v[j] - v[i];
-        let squared = apart.length_squared();
+        let squared = apart.length_squared().max(f64::MIN_POSITIVE);
         if squared < 4. {
             closest = closest.min(squared);
             let r = squared.sqrt();

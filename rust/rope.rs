@@ -1,12 +1,16 @@
 //! The bead rope that a sweep acts on: vertices, required edge lengths, and the neighbour list.
 //!
 //! **No strand may pass another.** Beads closer than 2 + skin when the list was made are listed.
-//! Until the next list no bead leaves the ball of radius skin/2 about its place of that time
-//! (a step that leads out of it ends on its surface and a new list is made), so beads that are not
-//! listed never overlap, and in one sweep two strands approach by at most 2 skin. Two strands whose
-//! beads keep a distance d and whose edges are at most s long stay sqrt(d^2 - s^2/2) apart.
-//! [`Rope::sweep`] checks that this exceeds 2 skin at any time within the sweep; if not, the sweep
-//! is undone together with all that followed the last list, and the rope given more length.
+//! Until the next list no bead leaves the ball of radius skin/2 about its place of that time (a step
+//! that leads out of it ends on its surface, and a new list is made). So beads that are not listed
+//! never overlap, and in one sweep a bead moves by at most skin. Let d be the least distance of
+//! listed beads, at most 2, and s the longest edge, before or after a sweep, whichever is worse.
+//! While the beads move straight from the one place to the other they stay d - skin apart, edges stay
+//! below s, and strands stay sqrt((d - skin)^2 - s^2/2) apart. Beads too near each other along the
+//! rope to be listed are at most pi apart, and a curve of that length closes to a loop only where its
+//! radius falls to 1/2; second differences of the vertices, too, stay below the larger of both ends.
+//! A sweep after which one of these bounds fails is undone, together with all that followed the last
+//! list.
 
 use std::ops::Range;
 
@@ -18,13 +22,18 @@ use crate::measures::measure;
 use crate::neighbours::{Separation, for_each_close_pair};
 use crate::procedures::{control_curvature, equalize_edges, least_index_distance, remove_overlaps};
 
-/// The thickest skin of the neighbour list, hence twice the longest way of a bead in one sweep.
+/// The thickest skin of the neighbour list, hence the longest way of a bead in one sweep.
 const THICKEST_SKIN: f64 = 0.25;
+/// The thinnest, a skin that can still grow again.
+const THINNEST_SKIN: f64 = 1e-9;
 
 /// A list that lasts fewer sweeps gets a thicker skin, any other a thinner one; the thinner the skin
 /// the shorter the list. One that lasts so long is made anew to learn whether a thinner one will do.
 const SHORT_LIFE: usize = 150;
 const LONG_LIFE: usize = 500;
+
+/// Below this violation strands are so far from passing that [`Gap`] need not be measured.
+const HARMLESS: f64 = 0.02;
 
 /// What a sweep met before it corrected it, R = 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -56,6 +65,50 @@ pub struct Rope {
     skin: f64,
     /// Sweeps since `pairs` was made.
     age: usize,
+    gap: Gap,
+}
+
+/// What keeps strands apart.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Gap {
+    /// Least distance of listed beads, at most 2.
+    beads: f64,
+    /// Longest edge.
+    edge: f64,
+    /// Longest second difference of the vertices, as a multiple of dl^2: one over the least radius.
+    bend: f64,
+}
+
+impl Gap {
+    fn of(curve: &Curve, dl: &[f64], pairs: &[(u32, u32)]) -> Self {
+        let v = curve.vertices();
+        let squared = pairs
+            .iter()
+            .fold(4f64, |least, &(i, j)| least.min(v[i as usize].distance_squared(v[j as usize])));
+        let mut gap = Self { beads: squared.sqrt(), edge: 0., bend: 0. };
+        for (range, dl) in curve.ranges().zip(dl) {
+            let v = &v[range];
+            let mut before = v[0] - v[v.len() - 1];
+            let (mut edge, mut bend) = (0f64, 0f64);
+            for i in 0..v.len() {
+                let after = v[(i + 1) % v.len()] - v[i];
+                edge = edge.max(after.length_squared());
+                bend = bend.max((after - before).length_squared());
+                before = after;
+            }
+            gap.edge = gap.edge.max(edge.sqrt());
+            gap.bend = gap.bend.max(bend.sqrt() / (dl * dl));
+        }
+        gap
+    }
+
+    /// Whether no strand passed another while beads moved by at most `way` from the one state to
+    /// the other.
+    fn safe(self, other: Self, way: f64) -> bool {
+        let beads = self.beads.min(other.beads) - way;
+        let edge = self.edge.max(other.edge);
+        beads > 0. && 2. * beads * beads > edge * edge && self.bend.max(other.bend) < 2.
+    }
 }
 
 impl Rope {
@@ -65,9 +118,16 @@ impl Rope {
         let dl: Vec<f64> = (0..curve.components())
             .map(|c| curve.component_length(c) / curve.range(c).len() as f64)
             .collect();
-        let longest = dl.iter().copied().fold(0., f64::max);
-        let skin = (longest * longest).min(0.5 * THICKEST_SKIN);
-        let mut rope = Self { curve, dl, pairs: vec![], reference: vec![], skin, age: 0 };
+        let mut rope = Self {
+            curve,
+            dl,
+            pairs: vec![],
+            reference: vec![],
+            skin: 0.,
+            age: 0,
+            gap: Gap::default(),
+        };
+        rope.skin = rope.longest_dl().powi(2).min(0.5 * THICKEST_SKIN);
         rope.list_neighbours();
         rope
     }
@@ -80,6 +140,11 @@ impl Rope {
     /// Mean required edge length.
     pub fn dl(&self) -> f64 {
         self.length() / self.curve.n() as f64
+    }
+
+    /// Largest required edge length.
+    pub fn longest_dl(&self) -> f64 {
+        self.dl.iter().copied().fold(0., f64::max)
     }
 
     /// Required length of all components together.
@@ -99,10 +164,16 @@ impl Rope {
         self.list_neighbours();
     }
 
-    /// Moves each bead by `step(i)`, which must be well below 1 R.
-    pub fn displace(&mut self, mut step: impl FnMut() -> DVec3) {
+    /// Moves each bead by a `step()` of at most 0.1 R, unless strands might pass; whether it did.
+    pub fn displace(&mut self, mut step: impl FnMut() -> DVec3) -> bool {
+        let before = self.gap;
         self.curve.vertices_mut().iter_mut().for_each(|v| *v += step());
+        let safe = Gap::of(&self.curve, &self.dl, &self.pairs).safe(before, 0.1);
+        if !safe {
+            self.curve.vertices_mut().copy_from_slice(&self.reference);
+        }
         self.list_neighbours();
+        safe
     }
 
     /// One EE, RO and CC pass. Returns the violations met, or `None` where the sweep was undone.
@@ -122,13 +193,24 @@ impl Rope {
             let (range, dl) = (self.curve.range(c), self.dl[c]);
             met.curvature = met.curvature.max(control_curvature(self.share(range), dl));
         }
-        if strands_stay_apart(met.overlap, longest_edge, self.skin) {
-            self.follow_motion();
-            Some(met)
+        let out = self.pull_back();
+        let gap = if met.worst().max(epsilon) < HARMLESS {
+            // Corrections of a bead after it was met add up to less than this.
+            Gap { beads: 1.5, edge: 1.1 * longest_edge, bend: 1.5 }
         } else {
+            Gap::of(&self.curve, &self.dl, &self.pairs)
+        };
+        if !gap.safe(self.gap, self.skin) {
             self.undo();
-            None
+            return None;
         }
+        self.gap = gap;
+        if out || self.age == LONG_LIFE {
+            let factor = if self.age < SHORT_LIFE { 1.5 } else { 0.8 };
+            self.skin = (self.skin * factor).min(THICKEST_SKIN);
+            self.list_neighbours();
+        }
+        Some(met)
     }
 
     /// Lets all components pull with the same tension, the mean of s_i - dl.
@@ -149,36 +231,24 @@ impl Rope {
         &mut self.curve.vertices_mut()[range]
     }
 
-    /// Keeps the beads where the neighbour list is valid and the list as short as it can be.
-    fn follow_motion(&mut self) {
-        let furthest = self
-            .curve
-            .vertices()
-            .iter()
-            .zip(&self.reference)
-            .fold(0., |furthest: f64, (v, r)| furthest.max(v.distance_squared(*r)))
-            .sqrt();
-        let out = furthest > 0.5 * self.skin;
-        if out {
-            self.pull_back(0.5 * self.skin);
+    /// Keeps the beads where the neighbour list is valid; returns whether one had left.
+    fn pull_back(&mut self) -> bool {
+        let allowed = 0.5 * self.skin;
+        let beads = self.curve.vertices_mut().iter_mut().zip(&self.reference);
+        let out = beads.fold(0f64, |out, (v, r)| out.max(v.distance_squared(*r)));
+        if out <= allowed * allowed {
+            return false;
         }
-        if out || self.age == LONG_LIFE {
-            let factor = if self.age < SHORT_LIFE { 1.5 } else { 0.8 };
-            self.skin = (self.skin * factor).min(THICKEST_SKIN);
-            self.list_neighbours();
-        }
-    }
-
-    fn pull_back(&mut self, furthest: f64) {
         for (v, r) in self.curve.vertices_mut().iter_mut().zip(&self.reference) {
-            *v = *r + (*v - *r).clamp_length_max(furthest);
+            *v = *r + (*v - *r).clamp_length_max(allowed);
         }
+        true
     }
 
     fn undo(&mut self) {
         self.curve.vertices_mut().copy_from_slice(&self.reference);
-        self.stretch(1.01);
-        self.skin *= 0.5;
+        self.stretch(1.001);
+        self.skin = (0.5 * self.skin).max(THINNEST_SKIN);
         self.list_neighbours();
     }
 
@@ -196,11 +266,6 @@ impl Rope {
         self.reference.clear();
         self.reference.extend_from_slice(self.curve.vertices());
         self.age = 0;
+        self.gap = Gap::of(&self.curve, &self.dl, &self.pairs);
     }
-}
-
-/// Whether no strand can pass another while beads overlap by at most `overlap` on their way.
-fn strands_stay_apart(overlap: f64, longest_edge: f64, skin: f64) -> bool {
-    let beads = 2. - overlap - 2. * skin;
-    beads > 0. && beads * beads - 0.5 * longest_edge * longest_edge > 4. * skin * skin
 }

@@ -123,8 +123,8 @@ pub struct Status {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Best {
     curve: Curve,
-    valid: bool,
-    l_c: f64,
+    /// Whether it is not valid, whether it has no L_c, and L_c, or else L_p.
+    rank: (bool, bool, f64),
 }
 
 /// Tightens a rope, stage by stage; everything needed to go on later is serialised with it.
@@ -137,6 +137,7 @@ pub struct Tightener {
     planned: u64,
     first_tolerance: f64,
     undone: u64,
+    undone_in_a_row: u64,
     met: Violation,
     outcome: Outcome,
     best: Best,
@@ -152,7 +153,7 @@ impl Tightener {
     pub fn collapse(curve: &Curve, settings: Settings) -> Result<Self> {
         settings.check()?;
         let mut rope = Rope::new(rope_curve(curve)?);
-        jitter(&mut rope, JITTER, settings.seed);
+        jitter(&mut rope, settings.seed);
         Ok(Self::new(rope, Stage::Collapse, u64::MAX, COLLAPSED, settings))
     }
 
@@ -162,7 +163,7 @@ impl Tightener {
     /// [`Error::Setting`], [`Error::TooCoarse`].
     pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         let mut rope = resampled(curve, n, settings)?;
-        jitter(&mut rope, JITTER, settings.seed);
+        jitter(&mut rope, settings.seed);
         let planned = settings.anneal_sweeps.into();
         Ok(Self::new(rope, Stage::Anneal, planned, settings.anneal_tolerance, settings))
     }
@@ -173,7 +174,7 @@ impl Tightener {
     /// [`Error::Setting`], [`Error::TooCoarse`].
     pub fn reanneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         let mut rope = resampled(curve, n, settings)?;
-        jitter(&mut rope, JITTER, settings.seed);
+        jitter(&mut rope, settings.seed);
         let planned = u64::from(settings.anneal_sweeps.div_ceil(2));
         let tolerance = settings.anneal_tolerance / 6.;
         Ok(Self::new(rope, Stage::Reanneal, planned, tolerance, settings))
@@ -191,7 +192,8 @@ impl Tightener {
     }
 
     fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
-        let best = Best { curve: at_unit_thickness(rope.curve()), valid: false, l_c: f64::MAX };
+        let rank = (true, true, f64::MAX);
+        let best = Best { curve: at_unit_thickness(rope.curve()), rank };
         let mut tightener = Self {
             settings,
             stage,
@@ -200,6 +202,7 @@ impl Tightener {
             planned,
             first_tolerance: tolerance,
             undone: 0,
+            undone_in_a_row: 0,
             met: Violation::default(),
             outcome: Outcome::Running,
             best,
@@ -230,9 +233,13 @@ impl Tightener {
         match self.rope.sweep(c_1, c_2, 0.5 * tolerance) {
             Some(met) => {
                 self.met = met;
+                self.undone_in_a_row = 0;
                 self.shrink_on_no_overlaps(tolerance);
             }
-            None => self.undone += 1,
+            None => {
+                self.undone += 1;
+                self.undone_in_a_row += 1;
+            }
         }
         self.sweeps += 1;
         if self.sweeps.is_multiple_of(10) && self.rope.curve().components() > 1 {
@@ -298,6 +305,7 @@ impl Tightener {
 
     fn judge(&mut self, valid: bool) -> Outcome {
         match self.stage {
+            _ if self.undone_in_a_row >= BURST => Outcome::Stuck,
             Stage::Collapse if self.sweeps >= self.planned => Outcome::Tight,
             Stage::Collapse if self.sweeps.is_multiple_of(JAM_SWEEPS) => {
                 let before = std::mem::replace(&mut self.length, self.rope.curve().length());
@@ -317,9 +325,10 @@ impl Tightener {
     fn keep_best(&mut self) -> bool {
         let now = measure(self.rope.curve());
         let valid = now.dispersion.max(1. - now.r_s) <= self.settings.tolerance;
-        let l_c = now.l_c.unwrap_or(f64::MAX);
-        if (!valid, l_c) < (!self.best.valid, self.best.l_c) {
-            self.best = Best { curve: at_unit_thickness(self.rope.curve()), valid, l_c };
+        // Without the bound L_c a rope is so coarse or rough that any with one is better.
+        let rank = (!valid, now.l_c.is_none(), now.l_c.unwrap_or(now.l_p));
+        if rank.2.is_finite() && rank < self.best.rank {
+            self.best = Best { curve: at_unit_thickness(self.rope.curve()), rank };
         }
         valid
     }
@@ -349,8 +358,8 @@ fn resampled(curve: &Curve, n: usize, settings: Settings) -> Result<Rope> {
     let shift = Pcg64Mcg::seed_from_u64(settings.seed).random();
     let same = curve.n() == n;
     let rope = Rope::new(if same { curve.clone() } else { refine(curve, n, shift) });
-    let dl = rope.dl();
     // At index distance 1 neighbouring beads would have to be 2 R apart.
+    let dl = rope.longest_dl();
     if least_index_distance(dl) < 2 {
         let needed = (rope.length() / 1.2) as usize + 1;
         return Err(Error::TooCoarse { n, dl, needed });
@@ -367,8 +376,10 @@ fn at_unit_thickness(curve: &Curve) -> Curve {
 }
 
 /// Displaces each bead at random.
-fn jitter(rope: &mut Rope, size: f64, seed: u64) {
+fn jitter(rope: &mut Rope, seed: u64) {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    // On a fine rope more than a share of dl would tie knots into neighbouring edges.
+    let size = JITTER.min(0.15 * rope.dl());
     let mut coordinate = || rng.random_range(-size..size);
     rope.displace(|| DVec3::new(coordinate(), coordinate(), coordinate()));
 }

@@ -56,6 +56,29 @@ fn too_few_vertices_are_refused_with_a_number_that_will_do() {
 }
 
 #[test]
+fn a_link_with_one_coarse_component_is_refused() {
+    // 60 and 5 vertices on rings of radius 2: the second has edges of 2.4.
+    let rings = vec![
+        common::polygon(60, 2. * DVec3::X, 2. * DVec3::Y, DVec3::ZERO),
+        common::polygon(5, 2. * DVec3::X, 2. * DVec3::Z, 2. * DVec3::X),
+    ];
+    let link = Curve::new(rings).unwrap();
+    let error = Tightener::anneal(&link, 65, quick()).unwrap_err();
+    assert!(matches!(error, Error::TooCoarse { .. }), "{error}");
+}
+
+#[test]
+fn a_fine_rope_is_not_knotted_by_its_jitter() {
+    let circle = Curve::new(vec![common::polygon(400, DVec3::X, DVec3::Y, DVec3::ZERO)]).unwrap();
+    for seed in 0..5 {
+        let settings = Settings { seed, anneal_sweeps: 300, ..Default::default() };
+        let end = finish(Tightener::anneal(&circle, 400, settings).unwrap());
+        // Any knot needs more than 31.
+        assert!(measure(end.best()).l_p < 10., "{}", measure(end.best()).l_p);
+    }
+}
+
+#[test]
 fn settings_out_of_range_are_named() {
     let wrong = Settings { c_1: 0.7, ..Default::default() };
     let error = Tightener::collapse(&torus(2., 3., 60), wrong).unwrap_err();
