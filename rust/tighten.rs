@@ -245,7 +245,7 @@ impl Tightener {
         if self.sweeps.is_multiple_of(10) && self.rope.curve().components() > 1 {
             self.rope.share_tension();
         }
-        if self.stage == Stage::Collapse && self.sweeps.is_multiple_of(100) {
+        if self.collapsing() && self.sweeps.is_multiple_of(100) {
             self.take_in_slack();
         }
         if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
@@ -276,12 +276,16 @@ impl Tightener {
     /// The violation tolerated at this moment.
     fn tolerance(&self) -> f64 {
         let last = match self.stage {
-            Stage::Collapse if self.planned == u64::MAX => COLLAPSED,
-            Stage::Collapse => return EASED,
+            Stage::Collapse => return if self.collapsing() { COLLAPSED } else { EASED },
             Stage::Anneal | Stage::Reanneal => ANNEALED.min(self.first_tolerance),
             Stage::Settle => 0.5 * self.settings.tolerance,
         };
         self.first_tolerance * (last / self.first_tolerance).powf(self.progress())
+    }
+
+    /// Whether the rope still has to jam; then it is eased, and the end of that is planned.
+    fn collapsing(&self) -> bool {
+        self.stage == Stage::Collapse && self.planned == u64::MAX
     }
 
     fn progress(&self) -> f64 {
