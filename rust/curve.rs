@@ -101,6 +101,18 @@ impl Curve {
         self.ends.partition_point(|&end| end <= i)
     }
 
+    /// The vertex after `i`, round its component.
+    pub fn next(&self, i: usize) -> usize {
+        let range = self.range(self.component_of(i));
+        if i + 1 == range.end { range.start } else { i + 1 }
+    }
+
+    /// The vertex before `i`, round its component.
+    pub fn prev(&self, i: usize) -> usize {
+        let range = self.range(self.component_of(i));
+        if i == range.start { range.end - 1 } else { i - 1 }
+    }
+
     /// The paper's ID: how many edges lie between vertices `i` and `j`, the shorter way round;
     /// `None` between components.
     pub fn index_distance(&self, i: usize, j: usize) -> Option<usize> {

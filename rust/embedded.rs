@@ -75,9 +75,7 @@ fn edges_meet(curve: &Curve, i: usize, j: usize, touching: f64) -> bool {
 }
 
 fn edge(curve: &Curve, i: usize) -> [DVec3; 2] {
-    let range = curve.range(curve.component_of(i));
-    let next = if i + 1 == range.end { range.start } else { i + 1 };
-    [curve.vertices()[i], curve.vertices()[next]]
+    [curve.vertices()[i], curve.vertices()[curve.next(i)]]
 }
 
 #[cfg(test)]

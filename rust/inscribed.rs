@@ -9,8 +9,6 @@
 //! about v_i meets only the two edges at v_i; these balls are disjoint, and rounding the corners
 //! inside them moves no strand through another.
 
-use std::ops::Range;
-
 use glam::DVec3;
 
 use crate::curve::{Curve, turning_angle};
@@ -175,7 +173,7 @@ fn clearances(curve: &Curve) -> Vec<f64> {
     let separation = Separation::by_index(curve, &vec![1; curve.components()]);
     for_each_close_pair(curve, &separation, 1.01 * longest, |i, j, _| {
         for (i, j) in [(i, j), (j, i)] {
-            for (from, to) in edges_at(curve, j) {
+            for (from, to) in [(curve.prev(j), j), (j, curve.next(j))] {
                 if from != i && to != i {
                     let v = curve.vertices();
                     let d = segments::to_point([v[from], v[to]], v[i]);
@@ -186,13 +184,6 @@ fn clearances(curve: &Curve) -> Vec<f64> {
         1.01 * longest
     });
     clearances
-}
-
-fn edges_at(curve: &Curve, i: usize) -> [(usize, usize); 2] {
-    let Range { start, end } = curve.range(curve.component_of(i));
-    let next = if i + 1 == end { start } else { i + 1 };
-    let prev = if i == start { end - 1 } else { i - 1 };
-    [(prev, i), (i, next)]
 }
 
 fn pieces(v: &[DVec3], tangents: &[f64]) -> Vec<Piece> {

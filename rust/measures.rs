@@ -38,7 +38,7 @@
 use std::f64::consts::{PI, SQRT_2};
 
 use crate::curve::Curve;
-use crate::neighbours::{Separation, closest_pair};
+use crate::neighbours::{Separation, closest_distance};
 
 /// What a curve measures, in the units of its vertices; the ropelengths `l_*` have no unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +80,7 @@ pub fn measure(curve: &Curve) -> Measures {
 
     let separation =
         Separation::by_arclength(curve, locals.iter().map(Local::least_separation).collect());
-    let sr = closest_pair(curve, &separation).map_or(f64::INFINITY, |(_, _, d)| 0.5 * d);
+    let sr = closest_distance(curve, &separation).map_or(f64::INFINITY, |d| 0.5 * d);
     let r_s = sr.min(least(Local::bending_radius));
 
     let length = total(|l| l.length);

@@ -113,15 +113,16 @@ pub fn for_each_close_pair(
     }
 }
 
-/// The pair that counts and is closest, as (i, j, distance); `None` where no pair counts.
-pub fn closest_pair(curve: &Curve, separation: &Separation) -> Option<(usize, usize, f64)> {
+/// The least distance of a pair that counts; `None` where no pair counts.
+pub fn closest_distance(curve: &Curve, separation: &Separation) -> Option<f64> {
     let mut closest = None;
     // A little more than the distance of some pair, so that pair itself is found if it is closest;
     // and not so little that cells could no longer be counted.
     let reach = (1.01 * some_distance(curve, separation)).max(1e-9 * curve.length());
-    for_each_close_pair(curve, separation, reach, |i, j, squared| {
-        closest = Some((i, j, squared.sqrt()));
-        squared.sqrt()
+    for_each_close_pair(curve, separation, reach, |_, _, squared| {
+        let distance = squared.sqrt();
+        closest = Some(distance);
+        distance
     });
     closest
 }

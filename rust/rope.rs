@@ -164,16 +164,14 @@ impl Rope {
         self.list_neighbours();
     }
 
-    /// Moves each bead by a `step()` of at most 0.1 R, unless strands might pass; whether it did.
-    pub fn displace(&mut self, mut step: impl FnMut() -> DVec3) -> bool {
+    /// Moves each bead by a `step()` of at most 0.1 R, unless strands might pass.
+    pub fn displace(&mut self, mut step: impl FnMut() -> DVec3) {
         let before = self.gap;
         self.curve.vertices_mut().iter_mut().for_each(|v| *v += step());
-        let safe = Gap::of(&self.curve, &self.dl, &self.pairs).safe(before, 0.1);
-        if !safe {
+        if !Gap::of(&self.curve, &self.dl, &self.pairs).safe(before, 0.1) {
             self.curve.vertices_mut().copy_from_slice(&self.reference);
         }
         self.list_neighbours();
-        safe
     }
 
     /// One EE, RO and CC pass. Returns the violations met, or `None` where the sweep was undone.

@@ -193,7 +193,7 @@ impl Tightener {
 
     fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
         let rank = (true, true, f64::MAX);
-        let best = Best { curve: at_unit_thickness(rope.curve()), rank };
+        let best = Best { curve: scaled(rope.curve(), measure(rope.curve()).r_s), rank };
         let mut tightener = Self {
             settings,
             stage,
@@ -252,7 +252,8 @@ impl Tightener {
             let valid = self.keep_best();
             self.outcome = self.judge(valid);
             if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
-                self.best.curve = at_unit_thickness(self.rope.curve());
+                let curve = self.rope.curve();
+                self.best.curve = scaled(curve, measure(curve).r_s);
             }
         }
         self.outcome
@@ -332,7 +333,7 @@ impl Tightener {
         // Without the bound L_c a rope is so coarse or rough that any with one is better.
         let rank = (!valid, now.l_c.is_none(), now.l_c.unwrap_or(now.l_p));
         if rank.2.is_finite() && rank < self.best.rank {
-            self.best = Best { curve: at_unit_thickness(self.rope.curve()), rank };
+            self.best = Best { curve: scaled(self.rope.curve(), now.r_s), rank };
         }
         valid
     }
@@ -371,10 +372,10 @@ fn resampled(curve: &Curve, n: usize, settings: Settings) -> Result<Rope> {
     Ok(rope)
 }
 
-/// The same shape with R_s = 1 and its centre at the origin.
-fn at_unit_thickness(curve: &Curve) -> Curve {
+/// The same shape, whose thickness is `r_s`, with R_s = 1 and its centre at the origin.
+fn scaled(curve: &Curve, r_s: f64) -> Curve {
     let mut curve = curve.clone();
-    curve.scale(1. / measure(&curve).r_s);
+    curve.scale(1. / r_s);
     curve.centre();
     curve
 }
