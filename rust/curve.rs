@@ -23,6 +23,9 @@ use crate::error::{Error, Result};
 /// Coordinates beyond, and edges below, are refused: their powers must neither over- nor underflow.
 const FURTHEST: f64 = 1e60;
 const SHORTEST: f64 = 1e-60;
+/// Neighbours coincide when they are closer than this share of their component's mean edge: below
+/// it rounding decides where the edge between them points.
+const COINCIDENT: f64 = 1e-12;
 
 /// One or more closed polygons in space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,7 +37,7 @@ pub struct Curve {
 
 impl Curve {
     /// A curve from its components' vertices, checked: at least 3 vertices each, all
-    /// coordinates within 1e60, all edges at least 1e-60 long.
+    /// coordinates within 1e60, all edges at least 1e-60 and 1e-12 of the mean edge long.
     ///
     /// # Errors
     /// [`Error::Empty`], [`Error::TooFewVertices`], [`Error::NotFinite`], [`Error::Coincident`].
@@ -166,14 +169,15 @@ fn check_component(component: usize, vertices: &[DVec3]) -> Result<()> {
     if n < 3 {
         return Err(Error::TooFewVertices { component, n });
     }
-    for (vertex, v) in vertices.iter().enumerate() {
-        let next = (vertex + 1) % n;
-        if !v.is_finite() || v.abs().max_element() > FURTHEST {
-            return Err(Error::NotFinite { component, vertex });
-        }
-        if v.distance(vertices[next]) < SHORTEST {
-            return Err(Error::Coincident { component, vertex, next });
-        }
+    let beyond = |v: &DVec3| !v.is_finite() || v.abs().max_element() > FURTHEST;
+    if let Some(vertex) = vertices.iter().position(beyond) {
+        return Err(Error::NotFinite { component, vertex });
     }
-    Ok(())
+    let next = |i: usize| (i + 1) % n;
+    let edges: Vec<_> = (0..n).map(|i| vertices[i].distance(vertices[next(i)])).collect();
+    let least = SHORTEST.max(COINCIDENT * edges.iter().sum::<f64>() / n as f64);
+    match edges.iter().position(|&edge| edge < least) {
+        Some(vertex) => Err(Error::Coincident { component, vertex, next: next(vertex) }),
+        None => Ok(()),
+    }
 }

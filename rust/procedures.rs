@@ -30,12 +30,16 @@ pub fn equalize_edges(v: &mut [DVec3], dl: f64, c_1: f64, odd_first: bool) -> (f
         let edge = *to - *from;
         // Two beads in one place stay there: there is no direction to move them in.
         let squared = edge.length_squared().max(f64::MIN_POSITIVE);
-        longest = longest.max(squared);
+        if squared > longest {
+            longest = squared;
+        }
         let lack = inverse_root(squared * per_square - 1.);
         let shift = (c_1 * lack) * edge;
         *from -= shift;
         *to += shift;
-        worst = worst.max(lack.abs());
+        if lack.abs() > worst {
+            worst = lack.abs();
+        }
     };
     for parity in [odd_first as usize, 1 - odd_first as usize] {
         for pair in v[parity..].chunks_exact_mut(2) {
@@ -63,14 +67,16 @@ fn inverse_root(x: f64) -> f64 {
 /// Returns the largest overlap 2 - r_ij met.
 pub fn remove_overlaps(v: &mut [DVec3], pairs: &[(u32, u32)], c_2: f64, epsilon: f64) -> f64 {
     let mut closest = 4f64;
+    let spread = 1. + 0.5 * epsilon;
     for &(i, j) in pairs {
         let (i, j) = (i as usize, j as usize);
         let apart = v[j] - v[i];
         let squared = apart.length_squared().max(f64::MIN_POSITIVE);
         if squared < 4. {
             closest = closest.min(squared);
-            let r = squared.sqrt();
-            let shift = (c_2 * (2. - r + epsilon) / r) * apart;
+            // (2 + epsilon)/r - 1
+            let lack = spread * inverse_root(0.25 * squared - 1.) + 0.5 * epsilon;
+            let shift = (c_2 * lack) * apart;
             v[i] -= shift;
             v[j] += shift;
         }

@@ -14,20 +14,25 @@ create_exception!(
     sono,
     CurveError,
     PyValueError,
-    "A curve that cannot be used; its arguments are the message, the component and the vertex\n\
-     (both counted from 0, None where the error has no place)."
+    "A curve that cannot be used; `places` lists what is wrong with it as (component, vertex), both\n\
+     counted from 0, the vertex None where a whole component is meant."
 );
 
 fn to_python(error: Error) -> PyErr {
-    let place = match error {
-        Error::TooFewVertices { component, .. } => (Some(component), None),
-        Error::NotFinite { component, vertex }
-        | Error::Coincident { component, vertex, .. }
-        | Error::SelfCrossing { component, vertex, .. } => (Some(component), Some(vertex)),
+    let places = match error {
         Error::Setting { .. } => return PyValueError::new_err(error.to_string()),
-        _ => (None, None),
+        Error::TooFewVertices { component, .. } => vec![(component, None)],
+        Error::NotFinite { component, vertex } => vec![(component, Some(vertex))],
+        Error::Coincident { component, vertex, next } => {
+            vec![(component, Some(vertex)), (component, Some(next))]
+        }
+        Error::SelfCrossing { component, vertex, other_component, other_vertex } => {
+            vec![(component, Some(vertex)), (other_component, Some(other_vertex))]
+        }
+        Error::Empty | Error::TooThin { .. } | Error::TooCoarse { .. } => vec![],
     };
-    CurveError::new_err((error.to_string(), place.0, place.1))
+    let raised = CurveError::new_err(error.to_string());
+    Python::attach(|py| raised.value(py).setattr("places", places)).map_or_else(|e| e, |()| raised)
 }
 
 type Arrays<'py> = Vec<PyReadonlyArray2<'py, f64>>;
@@ -54,6 +59,11 @@ fn arrays<'py>(py: Python<'py>, curve: &Curve) -> PyResult<Vec<Bound<'py, PyArra
         .collect()
 }
 
+/// What a curve measures, in its own unit; L_p, L_c and L_a are ropelengths, lengths over the radius.
+///
+/// n vertices on so many components; dl the mean edge, dispersion the largest |dl/s_i - 1|; MinRad, SR
+/// and R_s the thickness by curvature, by distance, and the smaller of both; R_c, L_c and L_a are None
+/// where the inscribed curve has no thickness of its own. Baranska, Pieranski, Rawdon, section 2.
 #[pyclass(frozen, get_all, module = "sono")]
 struct Measures {
     n: usize,
@@ -196,6 +206,10 @@ impl Tightener {
             .map_err(|e| PyValueError::new_err(e.to_string()))?;
         let status = py.detach(|| self.0.advance(budget));
         Status::new(py, &status)
+    }
+
+    fn status(&self, py: Python<'_>) -> PyResult<Status> {
+        Status::new(py, &self.0.status())
     }
 
     fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {

@@ -232,9 +232,8 @@ impl Rope {
     /// Keeps the beads where the neighbour list is valid; returns whether one had left.
     fn pull_back(&mut self) -> bool {
         let allowed = 0.5 * self.skin;
-        let beads = self.curve.vertices_mut().iter_mut().zip(&self.reference);
-        let out = beads.fold(0f64, |out, (v, r)| out.max(v.distance_squared(*r)));
-        if out <= allowed * allowed {
+        let mut beads = self.curve.vertices().iter().zip(&self.reference);
+        if beads.all(|(v, r)| v.distance_squared(*r) <= allowed * allowed) {
             return false;
         }
         for (v, r) in self.curve.vertices_mut().iter_mut().zip(&self.reference) {

@@ -329,7 +329,8 @@ impl Tightener {
     /// Remembers the rope as it is if it is better than what was; returns whether it is valid.
     fn keep_best(&mut self) -> bool {
         let now = measure(self.rope.curve());
-        let valid = now.dispersion.max(1. - now.r_s) <= self.settings.tolerance;
+        let overlap = 2. * (1. - now.r_s);
+        let valid = now.dispersion.max(overlap) <= self.settings.tolerance;
         // Without the bound L_c a rope is so coarse or rough that any with one is better.
         let rank = (!valid, now.l_c.is_none(), now.l_c.unwrap_or(now.l_p));
         if rank.2.is_finite() && rank < self.best.rank {

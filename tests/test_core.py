@@ -92,9 +92,8 @@ def test_errors_hold_the_place() -> None:
     curve = [np.eye(3), np.array([[0, 0, 5.0], [1, 0, 5], [1, 0, 5]])]
     with pytest.raises(_core.CurveError) as caught:
         _core.measure(curve)
-    message, component, vertex = caught.value.args
-    assert "coincide" in message
-    assert (component, vertex) == (1, 1)
+    assert str(caught.value).startswith("vertices 1 and 2 of component 1 coincide")
+    assert caught.value.places == [(1, 1), (1, 2)]
     assert issubclass(_core.CurveError, ValueError)
 
 

@@ -14,7 +14,9 @@ _Components: TypeAlias = list[NDArray[np.float64]]
 _Stage: TypeAlias = Literal["collapse", "anneal", "reanneal", "settle"]
 
 class CurveError(ValueError):
-    """A curve that cannot be used; `args` are the message, the component and the vertex (or None)."""
+    """A curve that cannot be used, and the places: (component, vertex), vertex None for a whole component."""
+
+    places: list[tuple[int, int | None]]
 
 @final
 class Measures:
@@ -82,6 +84,7 @@ class Tightener:
         settings: str,
     ) -> Tightener: ...
     def advance(self, seconds: float) -> Status: ...
+    def status(self) -> Status: ...
     def best(self) -> _Components: ...
     def state(self) -> str: ...
     @staticmethod

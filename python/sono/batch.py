@@ -212,10 +212,11 @@ class _Task:
 
 
 def _located(error: CurveError, file: VertexFile) -> FormatError:
-    """Say in which line of its file a curve is wrong."""
-    message, component, vertex = error.args
-    where = file.name if component is None else file.where(component, vertex or 0)
-    return FormatError(f"{where}: {message}")
+    """Say in which line, or in which two, of its file a curve is wrong."""
+    places = [file.where(component, vertex or 0) for component, vertex in error.places]
+    first, *others = places or [file.name]
+    other = "".join(f" (the other: {place})" for place in others)
+    return FormatError(f"{first}: {error}{other}")
 
 
 def _rope_row(job: Job, output: str | None, measures: Measures, status: str, **more: Any) -> Row:

@@ -229,7 +229,7 @@ class Run:
 
     def _tight(self, converged: bool) -> Tight:
         assert self.tightener is not None
-        status = self.tightener.advance(0)
+        status = self.tightener.status()
         sweeps = self.sweeps + status.sweeps
         return Tight(self.tightener.best(), status.best, converged, sweeps, self.seconds)
 
