@@ -1,9 +1,9 @@
 //! The core of sono: tight knots on the bead rope.
 //!
-//! **Curve -> measures** is one road, **curve -> rope -> sweeps of SONO -> tight curve** the other.
-//! Dependencies point one way only:
+//! **Curve -> measures** is one road, **curve -> rope -> sweeps of SONO -> Newton steps of the polish ->
+//! tight curve** the other. Dependencies point one way only:
 //! `error, segments, curve <- neighbours <- measures <- inscribed, embedded, procedures <- rope <- tighten
-//! <- python`.
+//! <- polish <- python`.
 
 pub mod curve;
 pub mod embedded;
@@ -11,6 +11,7 @@ pub mod error;
 pub mod inscribed;
 pub mod measures;
 pub mod neighbours;
+pub mod polish;
 pub mod procedures;
 #[cfg(feature = "python")]
 mod python;
@@ -24,5 +25,6 @@ pub use embedded::check_embedded;
 pub use error::{Error, Result};
 pub use inscribed::refine;
 pub use measures::{Measures, measure};
+pub use polish::Polish;
 pub use settings::Settings;
 pub use tighten::{Outcome, Stage, Status, Tightener};

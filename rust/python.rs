@@ -8,6 +8,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::polish::Forces;
 use crate::{Curve, Error, Outcome, Stage, check_embedded};
 
 create_exception!(
@@ -154,11 +155,7 @@ struct Status {
 impl Status {
     fn new(py: Python<'_>, status: &crate::Status) -> PyResult<Self> {
         Ok(Self {
-            outcome: match status.outcome {
-                Outcome::Running => "running",
-                Outcome::Tight => "tight",
-                Outcome::Stuck => "stuck",
-            },
+            outcome: name_of(status.outcome),
             stage: match status.stage {
                 Stage::Collapse => "collapse",
                 Stage::Anneal => "anneal",
@@ -202,8 +199,7 @@ impl Tightener {
     }
 
     fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
-        let budget = Duration::try_from_secs_f64(seconds)
-            .map_err(|e| PyValueError::new_err(e.to_string()))?;
+        let budget = budget(seconds)?;
         let status = py.detach(|| self.0.advance(budget));
         Status::new(py, &status)
     }
@@ -229,6 +225,131 @@ impl Tightener {
     }
 }
 
+#[pyclass(frozen, get_all, module = "sono._core")]
+struct PolishStatus {
+    outcome: &'static str,
+    progress: f64,
+    iterations: u64,
+    factorisations: u64,
+    residual: f64,
+    mu: f64,
+    excess: f64,
+    best: Py<Measures>,
+}
+
+impl PolishStatus {
+    fn new(py: Python<'_>, status: &crate::polish::Status) -> PyResult<Self> {
+        let &crate::polish::Status {
+            outcome,
+            progress,
+            iterations,
+            factorisations,
+            residual,
+            mu,
+            excess,
+            best,
+        } = status;
+        let (outcome, best) = (name_of(outcome), Py::new(py, Measures::from(best))?);
+        Ok(Self { outcome, progress, iterations, factorisations, residual, mu, excess, best })
+    }
+}
+
+#[pyclass(module = "sono._core")]
+struct Polish(crate::Polish);
+
+#[pymethods]
+impl Polish {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        components: Arrays<'_>,
+        n: usize,
+        passing: bool,
+        seed: u64,
+    ) -> PyResult<Self> {
+        let curve = curve(components)?;
+        py.detach(|| crate::Polish::new(&curve, n, passing, seed)).map(Self).map_err(to_python)
+    }
+
+    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<PolishStatus> {
+        let budget = budget(seconds)?;
+        let status = py.detach(|| self.0.advance(budget));
+        PolishStatus::new(py, &status)
+    }
+
+    fn status(&self, py: Python<'_>) -> PyResult<PolishStatus> {
+        PolishStatus::new(py, &self.0.status())
+    }
+
+    fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+        arrays(py, &self.0.best())
+    }
+
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<ForceArrays<'py>> {
+        force_arrays(py, self.0.forces())
+    }
+
+    fn state(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| serde_json::to_string(&self.0))
+            .map_err(|e| PyValueError::new_err(e.to_string()))
+    }
+
+    #[staticmethod]
+    fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
+        py.detach(|| serde_json::from_str(state))
+            .map(Self)
+            .map_err(|e| PyValueError::new_err(format!("not a state of a Polish: {e}")))
+    }
+}
+
+type Array<'py, T> = Bound<'py, PyArray1<T>>;
+/// Tension, couple, the contacts' beads and forces, the residual.
+type ForceArrays<'py> =
+    (Array<'py, f64>, Array<'py, f64>, Bound<'py, PyArray2<i64>>, Array<'py, f64>, f64);
+
+fn force_arrays(py: Python<'_>, forces: Forces) -> PyResult<ForceArrays<'_>> {
+    let Forces { tension, couple, contacts, residual } = forces;
+    let beads = contacts.iter().flat_map(|c| [c.0 as i64, c.1 as i64]).collect();
+    let pressing = contacts.iter().map(|c| c.2).collect();
+    Ok((
+        PyArray1::from_vec(py, tension),
+        PyArray1::from_vec(py, couple),
+        PyArray1::from_vec(py, beads).reshape([contacts.len(), 2])?,
+        PyArray1::from_vec(py, pressing),
+        residual,
+    ))
+}
+
+/// The forces that come nearest to balance on a curve.
+#[pyfunction]
+fn balance<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<ForceArrays<'py>> {
+    let curve = curve(components)?;
+    let forces = py
+        .detach(|| check_embedded(&curve).map(|()| crate::polish::balance(&curve)))
+        .map_err(to_python)?;
+    force_arrays(py, forces)
+}
+
+/// A rope of the type of any embedded curve, fine enough to be polished.
+#[pyfunction]
+fn rope<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+    let curve = curve(components)?;
+    let rope = py.detach(|| crate::inscribed::rope_curve(&curve)).map_err(to_python)?;
+    arrays(py, &rope)
+}
+
+fn name_of(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Running => "running",
+        Outcome::Tight => "tight",
+        Outcome::Stuck => "stuck",
+    }
+}
+
+fn budget(seconds: f64) -> PyResult<Duration> {
+    Duration::try_from_secs_f64(seconds).map_err(|e| PyValueError::new_err(e.to_string()))
+}
+
 fn settings_from_json(settings: &str) -> PyResult<crate::Settings> {
     serde_json::from_str(settings).map_err(|e| PyValueError::new_err(format!("settings: {e}")))
 }
@@ -236,5 +357,8 @@ fn settings_from_json(settings: &str) -> PyResult<crate::Settings> {
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use super::{CurveError, Measures, Status, Tightener, default_settings, measure, refine};
+    use super::{
+        CurveError, Measures, Polish, PolishStatus, Status, Tightener, balance, default_settings,
+        measure, refine, rope,
+    };
 }

@@ -15,9 +15,13 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
 use crate::curve::Curve;
+use crate::error::{Error, Result};
+use crate::inscribed::refine;
 use crate::measures::measure;
 use crate::neighbours::{Separation, for_each_close_pair};
 use crate::procedures::{control_curvature, equalize_edges, least_index_distance, remove_overlaps};
@@ -130,6 +134,24 @@ impl Rope {
         rope.skin = rope.longest_dl().powi(2).min(0.5 * THICKEST_SKIN);
         rope.list_neighbours();
         rope
+    }
+
+    /// A rope on `n` vertices in all, from one on any number: K_P at equal chords, the first
+    /// vertex at random. Where it is `n` already, it is taken as it is.
+    ///
+    /// # Errors
+    /// [`Error::TooCoarse`].
+    pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Self> {
+        let shift = Pcg64Mcg::seed_from_u64(seed).random();
+        let same = curve.n() == n;
+        let rope = Self::new(if same { curve.clone() } else { refine(curve, n, shift) });
+        // At index distance 1 neighbouring beads would have to be 2 R apart.
+        let dl = rope.longest_dl();
+        if least_index_distance(dl) < 2 {
+            let needed = (rope.length() / 1.2) as usize + 1;
+            return Err(Error::TooCoarse { n, dl, needed });
+        }
+        Ok(rope)
     }
 
     /// The curve as it is; its overlaps are those of the last sweep.

@@ -41,10 +41,9 @@ use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
 use crate::curve::Curve;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::inscribed::{refine, rope_curve};
 use crate::measures::{Measures, measure};
-use crate::procedures::least_index_distance;
 use crate::rope::{Rope, Violation};
 use crate::settings::Settings;
 
@@ -162,7 +161,8 @@ impl Tightener {
     /// # Errors
     /// [`Error::Setting`], [`Error::TooCoarse`].
     pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        let mut rope = resampled(curve, n, settings)?;
+        settings.check()?;
+        let mut rope = Rope::resampled(curve, n, settings.seed)?;
         jitter(&mut rope, settings.seed);
         let planned = settings.anneal_sweeps.into();
         Ok(Self::new(rope, Stage::Anneal, planned, settings.anneal_tolerance, settings))
@@ -173,7 +173,8 @@ impl Tightener {
     /// # Errors
     /// [`Error::Setting`], [`Error::TooCoarse`].
     pub fn reanneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        let mut rope = resampled(curve, n, settings)?;
+        settings.check()?;
+        let mut rope = Rope::resampled(curve, n, settings.seed)?;
         jitter(&mut rope, settings.seed);
         let planned = u64::from(settings.anneal_sweeps.div_ceil(2));
         let tolerance = settings.anneal_tolerance / 6.;
@@ -185,7 +186,8 @@ impl Tightener {
     /// # Errors
     /// [`Error::Setting`], [`Error::TooCoarse`].
     pub fn settle(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        let rope = resampled(curve, n, settings)?;
+        settings.check()?;
+        let rope = Rope::resampled(curve, n, settings.seed)?;
         let tolerance = 0.3 * rope.dl().min(1.).powi(2);
         let planned = n as u64 * u64::from(settings.settle_sweeps);
         Ok(Self::new(rope, Stage::Settle, planned, tolerance, settings))
@@ -359,22 +361,8 @@ impl Tightener {
     }
 }
 
-fn resampled(curve: &Curve, n: usize, settings: Settings) -> Result<Rope> {
-    settings.check()?;
-    let shift = Pcg64Mcg::seed_from_u64(settings.seed).random();
-    let same = curve.n() == n;
-    let rope = Rope::new(if same { curve.clone() } else { refine(curve, n, shift) });
-    // At index distance 1 neighbouring beads would have to be 2 R apart.
-    let dl = rope.longest_dl();
-    if least_index_distance(dl) < 2 {
-        let needed = (rope.length() / 1.2) as usize + 1;
-        return Err(Error::TooCoarse { n, dl, needed });
-    }
-    Ok(rope)
-}
-
 /// The same shape, whose thickness is `r_s`, with R_s = 1 and its centre at the origin.
-fn scaled(curve: &Curve, r_s: f64) -> Curve {
+pub(crate) fn scaled(curve: &Curve, r_s: f64) -> Curve {
     let mut curve = curve.clone();
     curve.scale(1. / r_s);
     curve.centre();

@@ -1,0 +1,232 @@
+//! One Newton step, and the matrix it needs: 3x3 blocks bordered by the edge lengths.
+//!
+//! With the multipliers' changes eliminated, a step (d, delta) of vertices and edge lengths solves
+//! `(sum D grad g grad g^T - z Hess g) (d, delta) = -grad f + sum (mu w/g) grad g`,
+//! D = (z - mu w')/g. The edge lengths are few, so they are eliminated last.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::problem::Term;
+use super::system::{Symmetric, System, symmetric};
+use crate::curve::Curve;
+
+/// What is always added to the diagonal, in units of 1/l, since rigid motions are free.
+const LEAST_SHIFT: f64 = 1e-9;
+/// What is added besides when the matrix is indefinite, four times as much at each new attempt; a
+/// fourth of it after a good step, and nothing when it has become small.
+const FIRST_SHIFT: f64 = 1e-3;
+const NO_SHIFT: f64 = 1e-8;
+const HOPELESS_SHIFT: f64 = 1e12;
+/// The pattern is analysed with pairs this far beyond the range of the barrier, so that they may
+/// come and go.
+const SPARE: f64 = 1.3;
+
+/// A step of the vertices, the edge lengths and the multipliers.
+pub struct Step {
+    pub d: Vec<DVec3>,
+    pub delta: Vec<f64>,
+    pub dz: Vec<f64>,
+    /// Derivative of the barrier function along (d, delta).
+    pub slope: f64,
+}
+
+/// What passes from one step to the next.
+#[derive(Default, Serialize, Deserialize)]
+pub struct Newton {
+    shift: f64,
+    factorisations: u64,
+    matrix: Matrix,
+}
+
+impl Newton {
+    /// How many factorisations there have been.
+    pub fn factorisations(&self) -> u64 {
+        self.factorisations
+    }
+
+    /// The step for barrier parameter `mu` and contact range `hat`, `z` being the multipliers of
+    /// `terms`; `None` if the matrix is beyond repair. `bystanders` are pairs that may be contacts soon.
+    pub fn step(
+        &mut self,
+        curve: &Curve,
+        l: &[f64],
+        terms: &[Term],
+        z: &[f64],
+        (mu, hat): (f64, f64),
+        bystanders: &[(u32, u32)],
+    ) -> Option<Step> {
+        let soon = bystanders
+            .iter()
+            .copied()
+            .filter(|&(i, j)| Term::contact(curve.vertices(), i, j).g < SPARE * hat);
+        self.matrix.analyse(curve, &terms[2 * curve.n()..], soon);
+        let weights: Vec<_> = terms.iter().map(|t| t.weight(hat)).collect();
+        let stiffness: Vec<_> = terms
+            .iter()
+            .zip(z)
+            .zip(&weights)
+            .map(|((t, z), (_, dw))| (z - mu * dw) / t.g)
+            .collect();
+        let bordered = self.matrix.assemble(curve, terms, &stiffness, z);
+        let mut d = vec![DVec3::ZERO; curve.n()];
+        let mut delta: Vec<_> = curve.ranges().map(|range| -(range.len() as f64)).collect();
+        for (t, (w, _)) in terms.iter().zip(&weights) {
+            let force = mu * w / t.g;
+            t.gradient().for_each(|(i, gradient)| d[i] += force * gradient);
+            delta[t.component] += force * t.h[0];
+        }
+        let downhill = (d.clone(), delta.clone());
+        loop {
+            self.factorisations += 1;
+            let shift = (self.shift + LEAST_SHIFT) / l[0];
+            let corner: Vec<_> = bordered.corner.iter().map(|c| c + self.shift / l[0]).collect();
+            if self.matrix.factor(&bordered, shift)
+                && self.matrix.solve(&bordered.border, &corner, &mut d, &mut delta)
+            {
+                break;
+            }
+            self.shift = (4. * self.shift).max(FIRST_SHIFT);
+            if self.shift > HOPELESS_SHIFT {
+                return None;
+            }
+            (d, delta) = downhill.clone();
+        }
+        let slope =
+            -dot(&downhill.0, &d) - downhill.1.iter().zip(&delta).map(|(a, b)| a * b).sum::<f64>();
+        let dz = (0..terms.len())
+            .map(|k| {
+                let [along, _] = terms[k].course(&d, &delta);
+                mu * weights[k].0 / terms[k].g - z[k] - stiffness[k] * along
+            })
+            .collect();
+        Some(Step { d, delta, dz, slope })
+    }
+
+    /// Takes note that the share `a` of the last step was taken.
+    pub fn learn(&mut self, a: f64) {
+        if a > 0.5 {
+            self.shift *= 0.25;
+        }
+        if self.shift < NO_SHIFT {
+            self.shift = 0.;
+        }
+    }
+}
+
+/// The matrix of a rope, analysed for a set of contacts.
+#[derive(Default, Serialize, Deserialize)]
+pub struct Matrix {
+    /// The pairs of beads it was analysed for, sorted.
+    pairs: Vec<(u32, u32)>,
+    /// Made anew from the pairs after a restart.
+    #[serde(skip)]
+    system: Option<System>,
+}
+
+/// The numbers of a matrix: its blocks, and the rows and the corner of the edge lengths.
+pub struct Bordered {
+    blocks: Vec<Symmetric>,
+    pub border: Vec<Vec<DVec3>>,
+    pub corner: Vec<f64>,
+}
+
+impl Matrix {
+    /// Makes room for `contacts`, in the order of their beads, and with them for those to come `soon`.
+    pub fn analyse(
+        &mut self,
+        curve: &Curve,
+        contacts: &[Term],
+        soon: impl Iterator<Item = (u32, u32)>,
+    ) {
+        let pair = |t: &Term| (t.beads[0] as u32, t.beads[1] as u32);
+        let n = curve.n();
+        let mut known = self.pairs.iter();
+        let idle = self.pairs.len().saturating_sub(contacts.len());
+        let fits = contacts.iter().all(|t| known.any(|&known| known == pair(t)));
+        if !fits || 3 * idle > self.pairs.len() + 2 * n {
+            self.pairs = contacts.iter().map(pair).chain(soon).collect();
+            self.pairs.sort_unstable();
+            self.system = None;
+        }
+        self.system.get_or_insert_with(|| {
+            let neighbours = (0..n).map(|i| [i, curve.next(i)]);
+            let seconds = (0..n).map(|i| [curve.prev(i), curve.next(i)]);
+            let contacts = self.pairs.iter().map(|&(i, j)| [i as usize, j as usize]);
+            System::new(n, &neighbours.chain(seconds).chain(contacts).collect::<Vec<_>>())
+        });
+    }
+
+    /// The sum of `stiffness` grad g grad g^T - `z` Hess g over all terms.
+    pub fn assemble(
+        &self,
+        curve: &Curve,
+        terms: &[Term],
+        stiffness: &[f64],
+        z: &[f64],
+    ) -> Bordered {
+        let n = curve.n();
+        let mut blocks = vec![[0.; 6]; 3 * n + self.pairs.len()];
+        let mut border = vec![vec![DVec3::ZERO; n]; curve.components()];
+        let mut corner = vec![0.; curve.components()];
+        let mut pair = 0;
+        for (k, ((t, d), z)) in terms.iter().zip(stiffness).zip(z).enumerate() {
+            let m = symmetric(t.y, 4. * d, -2. * t.sign * z);
+            let [i, j, e] = t.beads;
+            let (ends, between): (_, &[_]) = if k < n {
+                ([(i, 1.), (j, 1.), (i, 0.)], &[(n + i, -1.)])
+            } else if k < 2 * n {
+                let seconds = 2 * n + j;
+                ([(i, 1.), (j, 4.), (e, 1.)], &[(n + i, -2.), (n + j, -2.), (seconds, 1.)])
+            } else {
+                while self.pairs[pair] != (i as u32, j as u32) {
+                    pair += 1;
+                }
+                ([(i, 1.), (j, 1.), (i, 0.)], &[(3 * n + pair, -1.)])
+            };
+            for (block, factor) in ends.iter().chain(between) {
+                blocks[*block].iter_mut().zip(m).for_each(|(sum, m)| *sum += factor * m);
+            }
+            let c = t.component;
+            t.gradient().for_each(|(i, gradient)| border[c][i] += d * t.h[0] * gradient);
+            corner[c] += d * t.h[0] * t.h[0] - 2. * z * t.h[1];
+        }
+        Bordered { blocks, border, corner }
+    }
+
+    /// Factors the blocks with `shift` added to their diagonal; returns whether they are definite.
+    pub fn factor(&mut self, bordered: &Bordered, shift: f64) -> bool {
+        self.system.as_mut().expect("analysed before").factor(&bordered.blocks, shift)
+    }
+
+    /// Solves for (d, delta), given the right-hand side in them; returns whether the whole matrix is
+    /// positive definite.
+    pub fn solve(
+        &mut self,
+        border: &[Vec<DVec3>],
+        corner: &[f64],
+        d: &mut Vec<DVec3>,
+        delta: &mut [f64],
+    ) -> bool {
+        let system = self.system.as_mut().expect("analysed before");
+        let columns: Vec<_> = border.iter().map(|column| system.solve(column)).collect();
+        *d = system.solve(d);
+        let k = corner.len();
+        let schur = Mat::from_fn(k, k, |i, j| {
+            (if i == j { corner[i] } else { 0. }) - dot(&border[i], &columns[j])
+        });
+        let Ok(factor) = schur.llt(Side::Lower) else { return false };
+        let solved = factor.solve(Mat::from_fn(k, 1, |i, _| delta[i] - dot(&border[i], d)));
+        for (i, column) in columns.iter().enumerate() {
+            delta[i] = solved[(i, 0)];
+            d.iter_mut().zip(column).for_each(|(d, column)| *d -= delta[i] * *column);
+        }
+        true
+    }
+}
+
+fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+}
