@@ -43,8 +43,10 @@ impl Forces {
     }
 }
 
-/// Terms count as active when a distance or radius is within this of its bound, R = 1.
-const ACTIVE: f64 = 1e-4;
+/// Two beads may press against each other when they are at most so far apart, R = 1, and a bead may
+/// withstand bending when its radius is within this of R.
+const TOUCHING: f64 = 1e-4;
+const BENT: f64 = 1e-3;
 /// Share of the way to the boundary that a step goes, by how much it tries to lower mu, and where
 /// that ends.
 const TO_THE_BOUNDARY: f64 = 0.99;
@@ -55,9 +57,10 @@ const MOST_ITERATIONS: usize = 200;
 /// The forces that come nearest to balance on a curve as it is, scaled to R_s = 1: tensions,
 /// couples and contact forces are sought by non-negative least squares.
 ///
-/// Contacts and bends within 1e-4 of touching may bear a force; a rope that is tight to fewer digits
-/// than that has a large residual. The residual is the largest coordinate of what is left over on a bead,
-/// in units of the tension: 0 for a critical point of length, 1 for a curve without contacts.
+/// Beads at most 2.0001 apart may press against each other, and those whose radius is within 0.1 % of
+/// R may withstand bending, so a rope that is tight to fewer digits has a large residual. That is the
+/// largest coordinate of what is left over on a bead, in units of the tension: 0 for a critical point
+/// of length.
 pub fn balance(curve: &Curve) -> Forces {
     let mut curve = curve.clone();
     curve.scale(1. / measure(&curve).r_s);
@@ -66,7 +69,7 @@ pub fn balance(curve: &Curve) -> Forces {
         .collect();
     let mut terms: Vec<_> = chain_terms(&curve, &l).collect();
     let least: Vec<_> = l.iter().map(|&l| least_index_distance(l)).collect();
-    let reach = 2. + ACTIVE;
+    let reach = 2. + TOUCHING;
     let mut pairs = vec![];
     for_each_close_pair(&curve, &Separation::by_index(&curve, &least), reach, |i, j, _| {
         pairs.push((i as u32, j as u32));
@@ -77,7 +80,7 @@ pub fn balance(curve: &Curve) -> Forces {
     let n = curve.n();
     for bend in &mut terms[n..2 * n] {
         let most = l[bend.component].powi(2);
-        if bend.y.length() < (1. - ACTIVE) * most {
+        if bend.y.length() < (1. - BENT) * most {
             // No force: without a gradient its multiplier has no effect.
             (bend.y, bend.h) = (DVec3::ZERO, [0.; 2]);
         }

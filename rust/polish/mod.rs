@@ -168,6 +168,8 @@ impl Polish {
         let z = self.multipliers();
         while self.is_centred(&terms, &z) {
             if self.mu <= self.last_mu {
+                // The one in balance, though others may be shorter in the last digit.
+                self.best.clone_from(&self.curve);
                 self.outcome = Outcome::Tight;
                 return self.outcome;
             }
