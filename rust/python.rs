@@ -330,14 +330,6 @@ fn balance<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<ForceArray
     force_arrays(py, forces)
 }
 
-/// A rope of the type of any embedded curve, fine enough to be polished.
-#[pyfunction]
-fn rope<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
-    let curve = curve(components)?;
-    let rope = py.detach(|| crate::inscribed::rope_curve(&curve)).map_err(to_python)?;
-    arrays(py, &rope)
-}
-
 fn name_of(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Running => "running",
@@ -359,6 +351,6 @@ mod _core {
     #[pymodule_export]
     use super::{
         CurveError, Measures, Polish, PolishStatus, Status, Tightener, balance, default_settings,
-        measure, refine, rope,
+        measure, refine,
     };
 }

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sono
-from sono.pipeline import Progress, Run, Stopped, as_curve, check_settings, default_settings
+from sono.pipeline import Method, Progress, Run, Stopped, as_curve, check_settings, default_settings
 
 QUICK = {"anneal_sweeps": 500, "settle_sweeps": 100, "tolerance": 1e-2}
 
@@ -132,13 +132,22 @@ def test_keyboard_interrupt_passes_through() -> None:
 
 
 @pytest.mark.usefixtures("slices")
-def test_progress_climbs_to_the_target() -> None:
+@pytest.mark.parametrize(
+    ("method", "stages"),
+    [
+        ("both", ["collapse", "anneal", "trial", "climb", "polish"]),
+        ("sono", ["collapse", "anneal", "reanneal", "settle"]),
+        ("polish", ["climb", "polish"]),
+    ],
+)
+def test_progress_climbs_to_the_target(method: Method, stages: list[str]) -> None:
     seen: list[Progress] = []
-    sono.tighten(sono.start("3_1"), 160, settings=QUICK, watch=seen.append)
+    sono.tighten(sono.start("3_1"), 160, method=method, trials=1, settings=QUICK, watch=seen.append)
     assert {progress.target for progress in seen} == {160}
-    stages = [progress.stage for progress in seen]
-    assert stages == sorted(stages, key=["collapse", "anneal", "reanneal", "settle"].index)
-    assert [progress.n for progress in seen if progress.stage == "settle"][-1] == 160
+    assert {progress.trial for progress in seen} <= {1, 2}
+    met = [progress.stage for progress in seen]
+    assert met == sorted(met, key=stages.index)
+    assert [progress.n for progress in seen if progress.stage == stages[-1]][-1] == 160
     assert all(0 <= progress.status.progress <= 1 for progress in seen)
 
 

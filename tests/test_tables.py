@@ -111,7 +111,9 @@ def test_latex_escapes_names() -> None:
 
 
 def test_precision_of_every_column() -> None:
-    row: Row = dict.fromkeys(COLUMNS, 1.23456789012) | dict.fromkeys(("n", "components", "sweeps"), 7)
+    row: Row = dict.fromkeys(COLUMNS, 1.23456789012) | dict.fromkeys(
+        ("n", "components", "trials", "sweeps", "factorisations"), 7
+    )
     cells = dict(
         zip(COLUMNS, table("md", row, columns=tuple(COLUMNS)).splitlines()[4].split("|")[1:], strict=False)
     )

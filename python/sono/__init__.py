@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from sono._core import CurveError as CurveError
     from sono._core import Measures as Measures
     from sono.library import start as start
+    from sono.pipeline import Forces as Forces
     from sono.pipeline import Progress as Progress
     from sono.pipeline import Tight as Tight
+    from sono.pipeline import forces as forces
     from sono.pipeline import measure as measure
     from sono.pipeline import tighten as tighten
 
@@ -27,15 +29,17 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "CurveError": "sono._core",
+    "Forces": "sono.pipeline",
     "Measures": "sono._core",
     "Progress": "sono.pipeline",
     "Tight": "sono.pipeline",
+    "forces": "sono.pipeline",
     "measure": "sono.pipeline",
     "start": "sono.library",
     "tighten": "sono.pipeline",
 }
 
-__all__ = ["CurveError", "Measures", "Progress", "Tight", "measure", "start", "tighten"]
+__all__ = ["CurveError", "Forces", "Measures", "Progress", "Tight", "forces", "measure", "start", "tighten"]
 
 
 def __getattr__(name: str) -> Any:

@@ -8,9 +8,24 @@ from typing import Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CurveError", "Measures", "Status", "Tightener", "default_settings", "measure", "refine"]
+__all__ = [
+    "CurveError",
+    "Measures",
+    "Polish",
+    "PolishStatus",
+    "Status",
+    "Tightener",
+    "balance",
+    "default_settings",
+    "measure",
+    "refine",
+]
 
 _Components: TypeAlias = list[NDArray[np.float64]]
+_Outcome: TypeAlias = Literal["running", "tight", "stuck"]
+_Forces: TypeAlias = tuple[
+    NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], float
+]
 _Stage: TypeAlias = Literal["collapse", "anneal", "reanneal", "settle"]
 
 class CurveError(ValueError):
@@ -54,7 +69,7 @@ class Status:
     """Where a `Tightener` stands; `overlap` and `dispersion` are those the last sweep met, R = 1."""
 
     @property
-    def outcome(self) -> Literal["running", "tight", "stuck"]: ...
+    def outcome(self) -> _Outcome: ...
     @property
     def stage(self) -> _Stage: ...
     @property
@@ -90,6 +105,41 @@ class Tightener:
     @staticmethod
     def restore(state: str) -> Tightener: ...
 
+@final
+class PolishStatus:
+    """Where a `Polish` stands; `residual` is a force, tension being 1."""
+
+    @property
+    def outcome(self) -> _Outcome: ...
+    @property
+    def progress(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def factorisations(self) -> int: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def mu(self) -> float: ...
+    @property
+    def excess(self) -> float: ...
+    @property
+    def best(self) -> Measures: ...
+
+@final
+class Polish:
+    """The polish of a rope on n vertices in all; if only `passing`, it ends when that is worth refining."""
+
+    def __new__(cls, components: _Components, n: int, passing: bool, seed: int) -> Polish: ...
+    def advance(self, seconds: float) -> PolishStatus: ...
+    def status(self) -> PolishStatus: ...
+    def best(self) -> _Components: ...
+    def forces(self) -> _Forces: ...
+    def state(self) -> str: ...
+    @staticmethod
+    def restore(state: str) -> Polish: ...
+
+def balance(components: _Components) -> _Forces: ...
 def measure(components: _Components) -> Measures: ...
 def refine(components: _Components, n: int) -> _Components: ...
 def default_settings() -> str: ...

@@ -1,36 +1,51 @@
-"""From any closed curve to tight ones: the ladder of n, and the loop that runs each of its rungs.
+"""From any closed curve to tight ones: the plan of a run, and the loop that runs each of its rungs.
 
-A `Run` collapses the curve, then climbs for each n asked for: anneal at a coarse n, where beads rearrange
-most freely, refine the inscribed knot to twice the vertices and anneal a little more, then settle, refine and
-settle again until n is reached. Rust does the work in slices of a tenth of a second; between slices a caller
-may show progress, save or stop.
+A `Run` first finds a shape: SONO collapses the curve and anneals it on so few beads that they rearrange
+freely, and the polish makes the result exact; several such trials compete. From the best shape the run climbs
+to each n asked for, refining the inscribed knot to twice the vertices and polishing it. With the method
+"sono" there is one trial, and SONO does all the rest too. Rust does the work in slices of a tenth of a
+second; between slices a caller may show progress, save or stop.
 """
 
 import json
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from operator import index
-from typing import Any, Literal, Self, cast
+from typing import Any, Literal, Self, cast, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
-from sono._core import Measures, Status, Tightener
+from sono._core import Measures, Polish, PolishStatus, Status, Tightener
 
 Curve = list[NDArray[np.float64]]
-Stage = Literal["collapse", "anneal", "reanneal", "settle"]
+Method = Literal["both", "sono", "polish"]
+Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
+Rung = tuple[Stage, int]
 
 SLICE = 0.1
 """Seconds between two looks at the run."""
 
 COARSE = 0.7
-"""Edges of a rope that is annealed are at most so long, and at least half of it, where n allows; in radii."""
+"""Edges of a shape as it is found are at most so long, and at least half of it, where n allows; in radii."""
 
 FINE = 0.5
-"""Edges of a tight rope that is refined to the next n are at most so long; in radii."""
+"""Edges of a rope that SONO refines to the next n are at most so long; in radii."""
+
+TRIALS = 16
+"""Trials of a run, unless the first few agree."""
+
+AGREEING = 8
+"""A run whose first trials, so many, end in the same shape makes no more."""
+
+SAME_SHAPE = 1e-5
+"""Relative difference in L_a up to which two shapes count as the same."""
+
+HOT = 0.5
+"""Violation tolerated at the start of every other trial's anneal; it crosses higher barriers."""
 
 
 class Stopped(Exception):  # noqa: N818 - no error, a request that was followed
@@ -75,22 +90,36 @@ def measure(vertices: ArrayLike | Sequence[ArrayLike]) -> Measures:
     return _core.measure(as_curve(vertices))
 
 
+def forces(vertices: ArrayLike | Sequence[ArrayLike]) -> "Forces":
+    """Find the forces that come nearest to balance on a curve, scaled to R_s = 1.
+
+    Beads at most 2.0001 apart may press against each other, and those whose radius is within 0.1 % of R may
+    withstand bending. Raises `CurveError` for a curve that is not embedded.
+    """
+    return Forces(*_core.balance(as_curve(vertices)))
+
+
 def tighten(
     vertices: ArrayLike | Sequence[ArrayLike],
     n: int = 480,
     *,
+    method: Method = "both",
+    trials: int = TRIALS,
     seed: int = 0,
     time_limit: float | None = None,
     settings: dict[str, Any] | None = None,
     watch: "Callable[[Progress], None]" = lambda _: None,
 ) -> "Tight":
-    """Tighten a curve of any scale with SONO to a rope of `n` vertices, all components together.
+    """Tighten a curve of any scale to a rope of `n` vertices, all components together.
 
-    After `time_limit` seconds the best state so far is returned, with `converged` False. `settings` replaces
-    some of `default_settings()`. `watch` is called about ten times a second; KeyboardInterrupt passes through
-    it. Raises `CurveError` for a curve that cannot be tightened, `ValueError` for a wrong n or setting.
+    With the method "both" SONO finds shapes in up to `trials` trials and the polish makes the best one exact;
+    "sono" and "polish" do without the other. After `time_limit` seconds the best state so far is returned,
+    with `converged` False. `settings` replaces some of `default_settings()`, which are SONO's. `watch` is
+    called about ten times a second; KeyboardInterrupt passes through it. Raises `CurveError` for a curve that
+    cannot be tightened, `ValueError` for a wrong n, method or setting.
     """
-    run = Run(as_curve(vertices), [index(n)], {**(settings or {}), "seed": index(seed)})
+    settings = {**(settings or {}), "seed": index(seed)}
+    run = Run(as_curve(vertices), [index(n)], settings, method, index(trials))
     end = math.inf if time_limit is None else time.monotonic() + time_limit
 
     def watch_time(progress: Progress) -> None:
@@ -104,30 +133,62 @@ def tighten(
         return run.best()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """The forces in a rope of n beads and radius 1, in units of its mean tension.
+
+    `tension` (n,) is that of the edge after each bead, `couple` (n,) that with which each bead withstands
+    bending beyond the radius. The beads `contacts` (m, 2), counted through all components, press against
+    each other with the forces `pressing` (m,). `residual` is the largest coordinate of a force that is left
+    over on a bead.
+    """
+
+    tension: NDArray[np.float64]
+    couple: NDArray[np.float64]
+    contacts: NDArray[np.int64]
+    pressing: NDArray[np.float64]
+    residual: float
+
+
+@dataclass(frozen=True, eq=False)
 class Tight:
     """A tightened curve.
 
     `curve` holds one (n_i, 3) array for each component, scaled to R_s = 1; `measures` is what it measures.
-    `converged` tells whether dispersion and overlaps reached the tolerance that the settings ask for.
-    `sweeps` and `seconds` count from the start of the run.
+    `converged` tells whether the last engine reached its end: the polish a residual below 1e-8 at mu = 1e-11,
+    SONO the dispersion and overlaps that the settings ask for. `shapes` has the L_a of each trial's shape,
+    all at the same coarse n. `sweeps`, `factorisations` and `seconds` count from the start of the run.
+
+    Where the polish came last, `residual` is the largest force left over, tension being 1, `mu` the product
+    of each constraint's multiplier and slack, `excess` (constraints times mu) tells by how much this rope is
+    longer than the local minimum, and `forces` are those in the rope; otherwise these are None.
     """
 
     curve: Curve
     measures: Measures
     converged: bool
+    shapes: list[float]
     sweeps: int
+    factorisations: int
     seconds: float
+    residual: float | None = None
+    mu: float | None = None
+    excess: float | None = None
+    forces: Forces | None = None
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run stands: the rung it is on (`stage`, `n`), the n it climbs to, and the core's status."""
+    """Where a run stands: the rung it is on (`stage`, `n`), the n it climbs to, and the core's status.
+
+    `trial` counts the shapes tried, this one included, from 1.
+    """
 
     stage: Stage
     n: int
     target: int
-    status: Status
+    trial: int
+    status: Status | PolishStatus
 
 
 @dataclass
@@ -135,16 +196,21 @@ class Run:
     """A tightening that can be stopped, saved and resumed at any slice.
 
     `curve` is any embedded closed curve at any scale; `targets` are the numbers of vertices still wanted, all
-    components together, in increasing order. Raises `ValueError` for a wrong target or setting.
+    components together, in increasing order. Raises `ValueError` for a wrong target, method or setting.
     """
 
     curve: Curve
     targets: list[int]
     settings: dict[str, Any]
-    rungs: list[tuple[Stage, int]] = field(default_factory=lambda: [("collapse", 0)])
-    loose: Curve | None = None
-    tightener: Tightener | None = None
+    method: Method = "both"
+    trials: int = TRIALS
+    start: Curve = field(default_factory=list)
+    rungs: list[Rung] = field(default_factory=list)
+    shape: Curve | None = None
+    shapes: list[float] = field(default_factory=list)
+    worker: Tightener | Polish | None = None
     sweeps: int = 0
+    factorisations: int = 0
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
@@ -155,7 +221,16 @@ class Run:
             raise ValueError(
                 f"n = {self.targets[0]} is too small; 3 vertices for each component make {least} at least"
             )
+        if self.method not in get_args(Method):
+            raise ValueError(
+                f"unknown method {self.method!r}; the methods are: {', '.join(get_args(Method))}"
+            )
+        if self.trials < 1:
+            raise ValueError(f"trials = {self.trials} is too small; 1 is the least")
         check_settings(self.settings)
+        self.start = self.start or self.curve
+        if self.targets and not self.rungs:
+            self.rungs = self._climb_to_target() if self.method == "polish" else [("collapse", 0)]
 
     def tighten(self, watch: Callable[[Progress], None] = lambda _: None) -> Tight:
         """Tighten at the first target; `watch` is called between slices and may raise `Stopped`.
@@ -165,87 +240,193 @@ class Run:
         """
         while True:
             outcome = self._climb(watch)
-            if self.rungs == [("settle", self.targets[0])]:
+            if self.rungs in ([("settle", self.targets[0])], [("polish", self.targets[0])]):
                 return self._tight(outcome == "tight")
             self._leave()
 
     def next_target(self) -> None:
         """Turn from the first target, reached or out of reach, to the next."""
+        reached = self.worker is not None
         self._leave()
         self.targets.pop(0)
-        if self.targets:
-            self.rungs = self._ladder()
+        if not self.targets:
+            return
+        if self.method == "sono" and self.shape:
+            measures = _core.measure(self.curve)
+            fine = reached and measures.l_p / measures.n < FINE
+            self.rungs = self._climb_to_target() if fine else self._anneal()
+        elif reached or self.method == "polish":
+            self.rungs = self._climb_to_target()
+        else:
+            self.curve, self.shapes, self.rungs = self.start, [], [("collapse", 0)]
 
     def best(self) -> Tight:
-        """Return the best state of the rung on which `tighten` was stopped, as unconverged as it is."""
-        return self._tight(False)
+        """Return the best state as `tighten` was stopped, as unconverged as it is."""
+        tight = self._tight(False)
+        if self.method != "both" or self.shape is None or self.rungs[0][0] in ("climb", "polish"):
+            return tight
+        # In the middle of another trial the best shape so far is better.
+        return replace(tight, curve=self.shape, measures=_core.measure(self.shape))
 
     def state(self) -> dict[str, Any]:
         """Return all that is needed to go on later, for JSON; `Run.restore` is its inverse."""
+        lists = {
+            name: curve and [component.tolist() for component in curve]
+            for name, curve in (("curve", self.curve), ("start", self.start), ("shape", self.shape))
+        }
         return {
             **vars(self),
-            "curve": [component.tolist() for component in self.curve],
-            "loose": self.loose and [component.tolist() for component in self.loose],
-            "tightener": self.tightener and self.tightener.state(),
+            **lists,
+            "worker": self.worker and [type(self.worker).__name__, self.worker.state()],
         }
 
     @classmethod
     def restore(cls, state: dict[str, Any]) -> Self:
         """Return the run that gave this state; it goes on as if it had never stopped."""
-        return cls(
-            **state
-            | {
-                "curve": as_curve(state["curve"]),
-                "loose": state["loose"] and as_curve(state["loose"]),
-                "tightener": state["tightener"] and Tightener.restore(state["tightener"]),
-                "rungs": [(stage, n) for stage, n in state["rungs"]],
-            }
-        )
+        curves = {name: state[name] and as_curve(state[name]) for name in ("curve", "start", "shape")}
+        rungs = [(stage, n) for stage, n in state["rungs"]]
+        run = cls(**state | curves | {"rungs": rungs, "worker": None})
+        if state["worker"]:
+            engine, worker = state["worker"]
+            run.worker = Polish.restore(worker) if engine == "Polish" else Tightener.restore(worker)
+        return run
 
     def _climb(self, watch: Callable[[Progress], None]) -> str:
         """Run the first rung to its end; return the outcome."""
         stage, n = self.rungs[0]
-        if self.tightener is None:
-            self.tightener = Tightener(self.curve, stage, n, json.dumps(self.settings))
+        if self.worker is None:
+            self.worker = self._engine(stage, n)
         while True:
             start = time.perf_counter()
-            status = self.tightener.advance(SLICE)
+            status = self.worker.advance(SLICE)
             self.seconds += time.perf_counter() - start
             if status.outcome != "running":
                 return status.outcome
-            watch(Progress(stage, n or status.best.n, self.targets[0], status))
+            watch(Progress(stage, n or status.best.n, self.targets[0], len(self.shapes) + 1, status))
+
+    def _engine(self, stage: Stage, n: int) -> Tightener | Polish:
+        """Begin a rung."""
+        trial = len(self.shapes)
+        seed = (self.settings.get("seed", 0) + trial) % 2**64
+        if stage == "trial" or stage == "climb" or stage == "polish":
+            return Polish(self.curve, n, stage == "climb", seed)
+        settings = self.settings | {"seed": seed}
+        if self.method == "both":
+            settings |= _anneal_of(trial, default_settings() | self.settings)
+        return Tightener(self.curve, stage, n, json.dumps(settings))
 
     def _leave(self) -> None:
         """Take over what the first rung has reached, and plan the next ones if there are none."""
-        if self.tightener is None:
+        if self.worker is None:
             return
-        tight = self.best()
-        self.curve, self.sweeps = tight.curve, tight.sweeps
-        self.tightener = None
+        tight = self._tight(False)
+        self.curve, self.sweeps, self.factorisations = tight.curve, tight.sweeps, tight.factorisations
+        self.worker = None
         stage, _ = self.rungs.pop(0)
         if stage == "collapse":
-            self.loose = self.curve
-            self.rungs = self._ladder()
+            if self.method == "sono":
+                self.shape = self.curve
+                self.rungs = self._anneal()
+            else:
+                self.rungs = self._trial(tight.measures.l_p)
+        elif stage == "trial":
+            self._compare(tight.measures)
+            if self._enough():
+                self.curve = cast("Curve", self.shape)
+                self.rungs = self._climb_to_target()
+            else:
+                self.curve = self.start
+                self.rungs = [("collapse", 0)]
+
+    def _trial(self, length: float) -> list[Rung]:
+        """Plan the rest of a trial for a rope of this length."""
+        # Edges of other lengths find other shapes; multiples of the golden ratio spread them evenly.
+        least, most = (0.92, 1.1) if _is_hot(len(self.shapes)) else (0.6, 0.9)
+        edge = least + (most - least) * ((0.5 + len(self.shapes) // 2 * (math.sqrt(5) - 1) / 2) % 1)
+        n = _coarsest(self.targets[0], length)
+        return [("anneal", min(n, max(int(length / edge), 3 * len(self.curve)))), ("trial", n)]
+
+    def _compare(self, measures: Measures) -> None:
+        """Keep the shape of a trial if it is the shortest."""
+        length = measures.l_a or measures.l_p
+        if self.shape is None or length < min(self.shapes):
+            self.shape = self.curve
+        self.shapes.append(length)
+
+    def _enough(self) -> bool:
+        """Tell whether another trial is not worth it."""
+        agree = max(self.shapes) < (1 + SAME_SHAPE) * min(self.shapes)
+        return len(self.shapes) >= (AGREEING if agree else self.trials) or len(self.shapes) >= self.trials
 
     def _tight(self, converged: bool) -> Tight:
-        assert self.tightener is not None
-        status = self.tightener.status()
-        sweeps = self.sweeps + status.sweeps
-        return Tight(self.tightener.best(), status.best, converged, sweeps, self.seconds)
+        assert self.worker is not None
+        worker, status = self.worker, self.worker.status()
+        tight = Tight(
+            worker.best(),
+            status.best,
+            converged,
+            list(self.shapes),
+            self.sweeps,
+            self.factorisations,
+            self.seconds,
+        )
+        if isinstance(status, Status):
+            return replace(tight, sweeps=self.sweeps + status.sweeps)
+        return replace(
+            tight,
+            factorisations=self.factorisations + status.factorisations,
+            residual=status.residual,
+            mu=status.mu,
+            excess=status.excess,
+            forces=Forces(*cast("Polish", worker).forces()),
+        )
 
-    def _ladder(self) -> list[tuple[Stage, int]]:
-        """Plan the rungs from here to the next target, halving n as long as the rope stays fine enough."""
-        assert self.loose is not None
-        length = _core.measure(self.loose).l_p
+    def _anneal(self) -> list[Rung]:
+        """Plan SONO's rungs from the collapsed rope to the next target."""
+        assert self.shape is not None
+        self.curve = self.shape
         n = self.targets[0]
-        have = sum(map(len, self.curve))
-        climbing = self.curve is not self.loose and length / have < FINE
-        levels = [n]
-        while levels[0] // 2 > have if climbing else 2 * length / levels[0] < COARSE:
-            levels.insert(0, levels[0] // 2)
-        if climbing:
-            return [("settle", level) for level in levels]
-        self.curve = self.loose
-        coarsest, *finer = levels
-        anneals: list[tuple[Stage, int]] = [("anneal", coarsest), *(("reanneal", n) for n in finer[:1])]
+        coarsest = _coarsest(n, _core.measure(self.shape).l_p)
+        finer = _doubled(coarsest, n)
+        anneals: list[Rung] = [("anneal", coarsest), *(("reanneal", n) for n in finer[:1])]
         return anneals + [("settle", level) for level in finer or [coarsest]]
+
+    def _climb_to_target(self) -> list[Rung]:
+        """Plan the rungs from a tight rope to the next target."""
+        between, last = _CLIMB[self.method]
+        *levels, n = _doubled(sum(map(len, self.curve)), self.targets[0]) or self.targets[:1]
+        return [*((between, level) for level in levels), (last, n)]
+
+
+_CLIMB: dict[Method, tuple[Stage, Stage]] = {
+    "both": ("climb", "polish"),
+    "polish": ("climb", "polish"),
+    "sono": ("settle", "settle"),
+}
+
+
+def _is_hot(trial: int) -> bool:
+    return trial % 2 == 1
+
+
+def _anneal_of(trial: int, settings: dict[str, Any]) -> dict[str, Any]:
+    """Return the anneal of a trial: a short one, as it has to find a shape only, and every other one hot."""
+    sweeps = max(settings["anneal_sweeps"] // 10, 1)
+    tolerance = HOT if _is_hot(trial) else settings["anneal_tolerance"]
+    return {"anneal_sweeps": sweeps, "anneal_tolerance": tolerance}
+
+
+def _coarsest(n: int, length: float) -> int:
+    """Halve n as long as the edges of a rope of this length stay short enough."""
+    while 2 * length / n < COARSE:
+        n //= 2
+    return n
+
+
+def _doubled(have: int, n: int) -> list[int]:
+    """Return the levels above `have` that lead to n by doubling."""
+    levels: list[int] = []
+    while n > have:
+        levels.insert(0, n)
+        n //= 2
+    return levels

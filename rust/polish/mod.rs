@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::curve::Curve;
 use crate::error::Result;
+use crate::inscribed::rope_curve;
 use crate::measures::{Measures, measure};
 use crate::neighbours::{Separation, for_each_close_pair};
 use crate::procedures::least_index_distance;
@@ -57,6 +58,8 @@ const TO_THE_BOUNDARY: f64 = 0.99;
 const KEEP: f64 = 100.;
 /// Longest way of a bead in one step, in radii.
 const LONGEST_WAY: f64 = 0.1;
+/// Dispersion from which on a curve is not taken as a rope that is to be refined.
+const UNEQUAL: f64 = 0.1;
 /// Iterations in which a rope gets tight or never does.
 const MOST_ITERATIONS: u64 = 3000;
 
@@ -114,14 +117,16 @@ struct Contact {
 }
 
 impl Polish {
-    /// Polishes a rope on `n` vertices in all; `curve` must be one, see
-    /// [`crate::Tightener::collapse`]. Ends with a tight rope, or, if it is only `passing` this n, with
-    /// one that is good enough to be refined.
+    /// Polishes any embedded curve on `n` vertices in all. Ends with a tight rope, or, if it is only
+    /// `passing` this n, with one that is good enough to be refined.
     ///
     /// # Errors
-    /// [`crate::Error::TooCoarse`].
+    /// [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], [`crate::Error::TooCoarse`].
     pub fn new(curve: &Curve, n: usize, passing: bool, seed: u64) -> Result<Self> {
-        let mut curve = Rope::resampled(curve, n, seed)?.curve().clone();
+        let given = measure(curve);
+        let is_rope = given.r_c.is_some() && given.dispersion < UNEQUAL;
+        let made = if is_rope { None } else { Some(rope_curve(curve)?) };
+        let mut curve = Rope::resampled(made.as_ref().unwrap_or(curve), n, seed)?.curve().clone();
         let best = scaled(&curve, 1.);
         let shortest = best.length();
         let dl = shortest / n as f64;

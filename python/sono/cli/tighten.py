@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rich.progress import TaskID
 
     from sono.batch import Job, Result
-    from sono.pipeline import Progress
+    from sono.pipeline import Method, Progress
 
 
 def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int]:
@@ -48,12 +48,30 @@ def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int
     show_default=True,
     help="Vertices; a list gives a row each.",
 )
-@click.option("--method", type=click.Choice(["sono"]), default="sono", show_default=True, help="Engine.")
+@click.option(
+    "--method",
+    type=click.Choice(["both", "sono", "polish"]),
+    default="both",
+    show_default=True,
+    help="SONO to find a shape and the polish to make it exact, or one of them alone.",
+)
+@click.option(
+    "--trials",
+    type=click.IntRange(1),
+    default=16,
+    show_default=True,
+    help="Shapes to find with the method both, unless the first 8 agree; the shortest is polished.",
+)
 @click.option(
     "-o",
     "--output",
     metavar="PATH",
     help="File or folder/ for the vertices, - for standard output.  [default: NAME.nN.txt in this folder]",
+)
+@click.option(
+    "--contacts",
+    metavar="PATH",
+    help="File or folder/ for the forces in the tight rope, as TSV; in a folder NAME.nN.contacts.tsv.",
 )
 @click.option("--force", is_flag=True, help="Overwrite files that are there.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the anneal.")
@@ -90,8 +108,10 @@ def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int
 def command(
     sources: tuple[str, ...],
     targets: list[int],
-    method: str,
+    method: "Method",
+    trials: int,
     output: str | None,
+    contacts: str | None,
     force: bool,
     seed: int,
     time_limit: float | None,
@@ -116,8 +136,21 @@ def command(
     if force and resume:
         raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")
     fresh = not (force or resume)
+    if contacts and method == "sono":
+        raise click.UsageError("--contacts needs the polish; use the method both or polish")
     work = [
-        Job(source, name, outputs, settings, time_limit, _checkpoint(checkpoint, name), resume)
+        Job(
+            source,
+            name,
+            outputs,
+            settings,
+            method,
+            trials,
+            _forces(contacts, outputs, name, len(sources)),
+            time_limit,
+            _checkpoint(checkpoint, name),
+            resume,
+        )
         for source, name, outputs in _plan(sources, targets, output, fresh)
     ]
     paths = [path for job in work for path in job.files()]
@@ -135,6 +168,7 @@ class _Batch:
 
     def __init__(self, table: tables.TableWriter, quiet: bool) -> None:
         self.table = table
+        self.quiet = quiet
         self.bar = _bar(quiet)
         self.lock = threading.Lock()
         self.failed = False
@@ -176,6 +210,8 @@ class _Batch:
             if result.row:
                 self.table.row(result.row)
         finally:
+            if result.note and not self.quiet:
+                options.complain(result.note)
             if result.trouble:
                 self.failed = True
                 options.complain(result.trouble)
@@ -196,7 +232,8 @@ class _Batch:
         from sono.pipeline import Stopped
 
         status = progress.status
-        what = f"{progress.stage} n {progress.n}/{progress.target} L_p {status.best.l_p:.5f}"
+        trial = f"trial {progress.trial} " if progress.stage in ("collapse", "anneal", "trial") else ""
+        what = f"{trial}{progress.stage} n {progress.n}/{progress.target} L_p {status.best.l_p:.5f}"
         self.bar.update(task, completed=status.progress, what=what)
         if self.stop:
             raise Stopped(self.stop)
@@ -273,6 +310,17 @@ def _plan(
         # Nobody chose the name "stdin", so a pipe that is run again takes the next one.
         free = (paths for paths in files if not any(map(os.path.exists, paths.values())))
         yield source, name, next(free if source == "-" and fresh else files)
+
+
+def _forces(path: str | None, outputs: dict[int, str], name: str, sources: int) -> dict[int, str]:
+    """Say where the forces for each n go."""
+    if path is None:
+        return {}
+    if path.endswith(("/", os.sep)) or os.path.isdir(path):
+        return {n: os.path.join(path, f"{name}.n{n}.contacts.tsv") for n in outputs}
+    if len(outputs) * sources > 1:
+        raise click.UsageError("--contacts names one file, but there are several results; name a folder/")
+    return dict.fromkeys(outputs, path)
 
 
 def _checkpoint(folder: str | None, name: str) -> Path | None:

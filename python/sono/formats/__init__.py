@@ -5,7 +5,6 @@ another suffix is recognised by its content, and is plain text when nothing else
 """
 
 import os
-import sys
 from collections.abc import Iterable, Sequence
 from pathlib import PurePath
 from typing import Protocol
@@ -14,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import text, vect
-from sono.formats.files import atomic_text, load
+from sono.formats.files import atomic_text, load, save
 from sono.formats.vertices import FormatError, VertexFile
 
-__all__ = ["FORMATS", "FormatError", "VertexFile", "atomic_text", "read", "write"]
+__all__ = ["FORMATS", "FormatError", "VertexFile", "atomic_text", "read", "save", "write"]
 
 
 class Format(Protocol):
@@ -63,15 +62,7 @@ def write(
     if format not in FORMATS:
         raise ValueError(f"unknown format {format!r}; the formats are: {', '.join(FORMATS)}")
     content = FORMATS[format].write(components, comments)
-    if name == "-":
-        sys.stdout.write(content)
-        sys.stdout.flush()
-        return
-    try:
-        with atomic_text(target) as stream:
-            stream.write(content)
-    except OSError as error:
-        raise FormatError(f"{name}: cannot be written: {error.strerror or error}") from error
+    save(name, content)
 
 
 def _by_suffix(name: str) -> str | None:

@@ -33,6 +33,19 @@ def load(source: str | os.PathLike[str]) -> tuple[str, str]:
     return name, text.replace("\r\n", "\n").replace("\r", "\n")
 
 
+def save(target: str, content: str) -> None:
+    """Write a whole text to a file, or to standard output for "-". Raises `FormatError`."""
+    if target == "-":
+        sys.stdout.write(content)
+        sys.stdout.flush()
+        return
+    try:
+        with atomic_text(target) as stream:
+            stream.write(content)
+    except OSError as error:
+        raise FormatError(f"{target}: cannot be written: {error.strerror or error}") from error
+
+
 @contextmanager
 def atomic_text(path: str | os.PathLike[str]) -> Iterator[TextIO]:
     """Open a text file for writing that replaces `path` only once it is complete and on the disk.

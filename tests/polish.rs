@@ -1,0 +1,151 @@
+//! The polish: valid at every step, exact at its end, in balance, resumable.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+
+use common::{finish, hopf, polygon, quick, torus};
+use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use sono::polish::balance;
+use sono::{Curve, Error, Outcome, Polish, Tightener, measure};
+
+/// A rough trefoil: collapsed only.
+fn rough() -> Curve {
+    finish(Tightener::collapse(&torus(2., 3., 100), quick()).unwrap()).best().clone()
+}
+
+fn polished(curve: &Curve, n: usize) -> Polish {
+    let mut polish = Polish::new(curve, n, false, 1).unwrap();
+    while polish.step() == Outcome::Running {}
+    polish
+}
+
+#[test]
+fn the_trefoil_of_120_vertices_is_tight_to_the_last_digit() {
+    let polish = polished(&rough(), 120);
+    let status = polish.status();
+    assert_eq!(status.outcome, Outcome::Tight);
+    assert!(status.residual <= 1e-8 && status.mu <= 1e-11, "{status:?}");
+    assert!(status.excess <= 1e-8);
+    let m = measure(&polish.best());
+    assert_eq!(m, status.best);
+    assert!(m.dispersion <= 1e-10 && (m.r_s - 1.).abs() <= 1e-12, "{m:?}");
+    assert!(m.l_p <= 32.6920 && m.l_c.unwrap() <= 32.9410, "{} {:?}", m.l_p, m.l_c);
+}
+
+#[test]
+fn every_step_is_a_rope_and_the_best_one_is_kept() {
+    let mut polish = Polish::new(&rough(), 90, false, 1).unwrap();
+    let mut shortest = polish.status().best.l_p;
+    while polish.step() == Outcome::Running {
+        let now = polish.status().best;
+        assert!((now.r_s - 1.).abs() < 1e-12 && now.dispersion < 0.1, "{now:?}");
+        // The required length is bounded; what a rope measures exceeds it by its unequal edges.
+        assert!(now.l_p < shortest + 0.05, "{} after {shortest}", now.l_p);
+        shortest = shortest.min(now.l_p);
+    }
+    assert!(polish.status().best.l_p <= shortest + 1e-9);
+}
+
+#[test]
+fn a_saved_polish_goes_on_as_if_it_had_never_stopped() {
+    let whole = polished(&rough(), 80);
+    let mut part = Polish::new(&rough(), 80, false, 1).unwrap();
+    for steps in 0.. {
+        let outcome = part.step();
+        if outcome != Outcome::Running {
+            break;
+        }
+        if steps % 5 == 0 {
+            part = serde_json::from_str(&serde_json::to_string(&part).unwrap()).unwrap();
+        }
+    }
+    assert_eq!(part.best(), whole.best());
+    assert_eq!(part.status(), whole.status());
+}
+
+/// The first-order change of length when the beads of a tight rope move by `d` and the rope is
+/// scaled back to thickness 1, computed by moving them a little.
+fn change_of_length(curve: &Curve, d: &[DVec3], step: f64) -> f64 {
+    let mut moved = curve.clone();
+    moved.vertices_mut().iter_mut().zip(d).for_each(|(v, d)| *v += step * *d);
+    // Edges may not get longer than the longest: that one counts for all.
+    let longest = |curve: &Curve| curve.edge_lengths(0).fold(0., f64::max);
+    let rope = |curve: &Curve| curve.n() as f64 * longest(curve) / measure(curve).r_s;
+    (rope(&moved) - rope(curve)) / step
+}
+
+#[test]
+fn no_small_displacement_shortens_a_tight_rope() {
+    let tight = polished(&rough(), 100).best();
+    let mut random = Pcg64Mcg::seed_from_u64(5);
+    for trial in 0..200 {
+        // Rough in one half of the trials, smooth along the rope in the other.
+        let mut direction =
+            || DVec3::from_array(std::array::from_fn(|_| random.random_range(-1.0..1.)));
+        let d: Vec<_> = if trial % 2 == 0 {
+            (0..tight.n()).map(|_| direction()).collect()
+        } else {
+            let waves: Vec<_> = (1..6).map(|k| (k, direction(), direction())).collect();
+            let at = |i: usize, k: i32| TAU * f64::from(k) * i as f64 / tight.n() as f64;
+            let wave =
+                |i| move |&(k, a, b): &(i32, DVec3, DVec3)| a * at(i, k).cos() + b * at(i, k).sin();
+            (0..tight.n()).map(|i| waves.iter().map(wave(i)).sum()).collect()
+        };
+        let change = change_of_length(&tight, &d, 1e-7);
+        assert!(change > -1e-4, "trial {trial}: {change}");
+    }
+}
+
+#[test]
+fn forces_balance_and_a_fit_to_the_vertices_finds_them() {
+    let polish = polished(&rough(), 100);
+    let (own, fitted) = (polish.forces(), balance(&polish.best()));
+    assert!(
+        own.residual <= 1e-8 && fitted.residual <= 1e-6,
+        "{} {}",
+        own.residual,
+        fitted.residual
+    );
+    let mean = own.tension.iter().sum::<f64>() / 100.;
+    assert!((mean - 1.).abs() < 0.02, "{mean}");
+    let total = |contacts: &[(usize, usize, f64)]| contacts.iter().map(|c| c.2).sum::<f64>();
+    let (a, b) = (total(&own.contacts), total(&fitted.contacts));
+    assert!((a - b).abs() < 1e-3 * a, "{a} {b}");
+    assert!(own.tension.iter().chain(&own.couple).all(|&f| f >= 0.));
+    // A rope that is not tight is out of balance.
+    assert!(balance(&rough()).residual > 1e-3);
+    assert!(balance(&torus(2., 3., 100)).residual > 0.1);
+}
+
+#[test]
+fn the_tight_unknot_is_the_regular_polygon() {
+    let flat: Vec<_> = polygon(60, DVec3::X, 1.2 * DVec3::Y, DVec3::ZERO);
+    let m = measure(&polished(&Curve::new(vec![flat]).unwrap(), 40).best());
+    // Beads 19 edges apart, one less than opposite ones, must keep their distance already.
+    let expected = 80. * (PI / 40.).sin() / (PI * 19. / 40.).sin();
+    assert!((m.l_p - expected).abs() < 1e-8, "{} {expected}", m.l_p);
+}
+
+#[test]
+fn the_hopf_link_lies_on_both_sides_of_its_exact_length() {
+    // Each component's beads settle astride the other's centre, which gains up to dl^2/16 of the
+    // radius 2 and with it up to dl^2 pi/4 in L_p; L_c remains a bound.
+    for n in [120, 240, 480] {
+        let m = measure(&polished(&hopf(50), n).best());
+        let gain = 0.25 * PI * m.dl * m.dl;
+        assert!(m.l_p < 8. * PI && m.l_c.unwrap() > 8. * PI, "{m:?}");
+        assert!(m.l_c.unwrap() < 8. * PI + 2. * m.dl * m.dl, "{m:?}");
+        assert!((m.l_a.unwrap() - 8. * PI).abs() < gain, "{n} {:?} {gain}", m.l_a);
+    }
+}
+
+#[test]
+fn what_cannot_be_polished_is_refused() {
+    let flat = [[0., 0., 0.], [2., 2., 0.], [2., 0., 0.], [0., 2., 0.]].map(DVec3::from);
+    let crossing = Curve::new(vec![flat.to_vec()]).unwrap();
+    assert!(matches!(Polish::new(&crossing, 100, false, 0), Err(Error::SelfCrossing { .. })));
+    assert!(matches!(Polish::new(&rough(), 12, false, 0), Err(Error::TooCoarse { .. })));
+}
