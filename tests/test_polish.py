@@ -82,21 +82,21 @@ def test_a_tight_rope_carries_its_physics() -> None:
 
 def test_sono_alone_has_no_physics() -> None:
     tight = library.tighten(library.start("3_1"), 60, method="sono", settings={"anneal_sweeps": 5000})
-    assert tight.residual is tight.mu is tight.excess is tight.forces is None
+    assert (tight.residual, tight.mu, tight.excess, tight.forces) == (None, None, None, None)
     assert tight.sweeps > 0 == tight.factorisations
 
 
 def test_several_trials_find_a_better_shape() -> None:
     # From this start nearly all gentle anneals end at L_a 61.508.
     tight = library.tighten(library.start("7_1"), 154)
-    assert len(tight.shapes) == 16
+    assert len(tight.shapes) == 8
     assert tight.measures.l_a is not None
     assert tight.measures.l_a == pytest.approx(min(tight.shapes), rel=1e-6)
     assert tight.measures.l_a < 61.41 < max(tight.shapes)
 
 
 def test_trials_that_agree_are_enough() -> None:
-    assert len(library.tighten(library.start("3_1"), 60).shapes) == 8
+    assert len(library.tighten(library.start("3_1"), 60).shapes) == 4
     assert len(library.tighten(library.start("3_1"), 60, trials=3).shapes) == 3
     with pytest.raises(ValueError, match="trials = 0 is too small"):
         library.tighten(library.start("3_1"), 60, trials=0)

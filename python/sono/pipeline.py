@@ -35,14 +35,19 @@ COARSE = 0.7
 FINE = 0.5
 """Edges of a rope that SONO refines to the next n are at most so long; in radii."""
 
-TRIALS = 16
+TRIALS = 8
 """Trials of a run, unless the first few agree."""
 
-AGREEING = 8
+AGREEING = 4
 """A run whose first trials, so many, end in the same shape makes no more."""
 
 SAME_SHAPE = 1e-5
 """Relative difference in L_a up to which two shapes count as the same."""
+
+OFFSETS = 3
+OFFSETS_TO = 1000
+"""Offsets along the rope from which the last n is refined, up to this n: beads settle in other grooves each
+time, which matters less the finer they are."""
 
 HOT = 0.5
 """Violation tolerated at the start of every other trial's anneal; it crosses higher barriers."""
@@ -209,6 +214,8 @@ class Run:
     shape: Curve | None = None
     shapes: list[float] = field(default_factory=list)
     worker: Tightener | Polish | None = None
+    offset: int = 0
+    rival: Polish | None = None
     sweeps: int = 0
     factorisations: int = 0
     seconds: float = 0.0
@@ -239,14 +246,16 @@ class Run:
         or not with so few vertices.
         """
         while True:
-            outcome = self._climb(watch)
-            if self.rungs in ([("settle", self.targets[0])], [("polish", self.targets[0])]):
-                return self._tight(outcome == "tight")
-            self._leave()
+            self._climb(watch)
+            if self.rungs not in ([("settle", self.targets[0])], [("polish", self.targets[0])]):
+                self._leave()
+            elif self._last_offset():
+                return self._tight(self.worker)
 
     def next_target(self) -> None:
         """Turn from the first target, reached or out of reach, to the next."""
         reached = self.worker is not None
+        self.offset, self.rival = 0, None
         self._leave()
         self.targets.pop(0)
         if not self.targets:
@@ -262,7 +271,7 @@ class Run:
 
     def best(self) -> Tight:
         """Return the best state as `tighten` was stopped, as unconverged as it is."""
-        tight = self._tight(False)
+        tight = replace(self._tight(self.rival or self.worker), converged=False)
         if self.method != "both" or self.shape is None or self.rungs[0][0] in ("climb", "polish"):
             return tight
         # In the middle of another trial the best shape so far is better.
@@ -274,25 +283,26 @@ class Run:
             name: curve and [component.tolist() for component in curve]
             for name, curve in (("curve", self.curve), ("start", self.start), ("shape", self.shape))
         }
-        return {
-            **vars(self),
-            **lists,
+        engines = {
             "worker": self.worker and [type(self.worker).__name__, self.worker.state()],
+            "rival": self.rival and self.rival.state(),
         }
+        return {**vars(self), **lists, **engines}
 
     @classmethod
     def restore(cls, state: dict[str, Any]) -> Self:
         """Return the run that gave this state; it goes on as if it had never stopped."""
         curves = {name: state[name] and as_curve(state[name]) for name in ("curve", "start", "shape")}
         rungs = [(stage, n) for stage, n in state["rungs"]]
-        run = cls(**state | curves | {"rungs": rungs, "worker": None})
+        rival = state["rival"] and Polish.restore(state["rival"])
+        run = cls(**state | curves | {"rungs": rungs, "worker": None, "rival": rival})
         if state["worker"]:
             engine, worker = state["worker"]
             run.worker = Polish.restore(worker) if engine == "Polish" else Tightener.restore(worker)
         return run
 
-    def _climb(self, watch: Callable[[Progress], None]) -> str:
-        """Run the first rung to its end; return the outcome."""
+    def _climb(self, watch: Callable[[Progress], None]) -> None:
+        """Run the first rung to its end."""
         stage, n = self.rungs[0]
         if self.worker is None:
             self.worker = self._engine(stage, n)
@@ -301,13 +311,29 @@ class Run:
             status = self.worker.advance(SLICE)
             self.seconds += time.perf_counter() - start
             if status.outcome != "running":
-                return status.outcome
+                return
             watch(Progress(stage, n or status.best.n, self.targets[0], len(self.shapes) + 1, status))
+
+    def _last_offset(self) -> bool:
+        """Let the polish that is done compete with the best before it; tell whether it was the last."""
+        done, n = self.worker, self.targets[0]
+        offsets = OFFSETS if n <= OFFSETS_TO and sum(map(len, self.curve)) != n else 1
+        if not isinstance(done, Polish) or self.offset == offsets:
+            return True
+        if self.rival:
+            better, worse = sorted((done, self.rival), key=_rank)
+            self.worker, self.factorisations = better, self.factorisations + worse.status().factorisations
+        self.offset += 1
+        if self.offset == offsets:
+            self.rival = None
+            return True
+        self.rival, self.worker = cast("Polish", self.worker), None
+        return False
 
     def _engine(self, stage: Stage, n: int) -> Tightener | Polish:
         """Begin a rung."""
         trial = len(self.shapes)
-        seed = (self.settings.get("seed", 0) + trial) % 2**64
+        seed = (self.settings.get("seed", 0) + trial + self.offset) % 2**64
         if stage == "trial" or stage == "climb" or stage == "polish":
             return Polish(self.curve, n, stage == "climb", seed)
         settings = self.settings | {"seed": seed}
@@ -319,7 +345,7 @@ class Run:
         """Take over what the first rung has reached, and plan the next ones if there are none."""
         if self.worker is None:
             return
-        tight = self._tight(False)
+        tight = self._tight(self.worker)
         self.curve, self.sweeps, self.factorisations = tight.curve, tight.sweeps, tight.factorisations
         self.worker = None
         stage, _ = self.rungs.pop(0)
@@ -358,13 +384,13 @@ class Run:
         agree = max(self.shapes) < (1 + SAME_SHAPE) * min(self.shapes)
         return len(self.shapes) >= (AGREEING if agree else self.trials) or len(self.shapes) >= self.trials
 
-    def _tight(self, converged: bool) -> Tight:
-        assert self.worker is not None
-        worker, status = self.worker, self.worker.status()
+    def _tight(self, worker: Tightener | Polish | None) -> Tight:
+        assert worker is not None
+        status = worker.status()
         tight = Tight(
             worker.best(),
             status.best,
-            converged,
+            status.outcome == "tight",
             list(self.shapes),
             self.sweeps,
             self.factorisations,
@@ -403,6 +429,12 @@ _CLIMB: dict[Method, tuple[Stage, Stage]] = {
     "polish": ("climb", "polish"),
     "sono": ("settle", "settle"),
 }
+
+
+def _rank(polish: Polish) -> tuple[bool, float]:
+    """Order tight ropes before others, then the shorter before the longer."""
+    status = polish.status()
+    return status.outcome != "tight", status.best.l_p
 
 
 def _is_hot(trial: int) -> bool:

@@ -58,9 +58,9 @@ def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int
 @click.option(
     "--trials",
     type=click.IntRange(1),
-    default=16,
+    default=8,
     show_default=True,
-    help="Shapes to find with the method both, unless the first 8 agree; the shortest is polished.",
+    help="Shapes to find with the method both, unless the first 4 agree; the shortest is polished.",
 )
 @click.option(
     "-o",
