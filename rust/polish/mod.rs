@@ -49,9 +49,11 @@ const FALL: f64 = 0.2;
 const FALL_POWER: f64 = 1.2;
 /// The error at which it falls, in units of mu.
 const CENTRED: f64 = 10.;
-/// The contacts' barrier has the range max(0.1 l^2, 3 sqrt mu) in g = r^2 - 4.
-const RANGE: f64 = 0.1;
+/// The contacts' barrier has the range 3 sqrt mu in g = r^2 - 4, but at least 0.1 l^2 and at most
+/// l^2, which is as far as a contact moves when the beads slide by half an edge: pairs beyond would
+/// only cost time.
 const RANGE_MU: f64 = 3.;
+const SHORTEST_RANGE: f64 = 0.1;
 /// Share of a constraint that a step may use up.
 const TO_THE_BOUNDARY: f64 = 0.99;
 /// Multipliers stay within this factor of mu w/g.
@@ -198,7 +200,7 @@ impl Polish {
     /// Range of the contacts' barrier.
     fn range(&self) -> f64 {
         let l = self.l.iter().copied().fold(0., f64::max);
-        (RANGE * l * l).max(RANGE_MU * self.mu.sqrt())
+        (RANGE_MU * self.mu.sqrt()).clamp(SHORTEST_RANGE * l * l, l * l)
     }
 
     /// Brings the contacts up to date. Returns all terms, and the pairs beyond the range of the
