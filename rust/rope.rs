@@ -144,11 +144,15 @@ impl Rope {
     pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Self> {
         let shift = Pcg64Mcg::seed_from_u64(seed).random();
         let same = curve.n() == n;
-        let rope = Self::new(if same { curve.clone() } else { refine(curve, n, shift) });
+        let mut resampled = if same { curve.clone() } else { refine(curve, n, shift) };
+        // On the rope as it was, too: longer edges would cut through its strands.
+        resampled.scale(1. / measure(curve).r_s);
+        let before = resampled.length() / n as f64;
+        let rope = Self::new(resampled);
         // At index distance 1 neighbouring beads would have to be 2 R apart.
-        let dl = rope.longest_dl();
+        let dl = rope.longest_dl().max(before);
         if least_index_distance(dl) < 2 {
-            let needed = (rope.length() / 1.2) as usize + 1;
+            let needed = (measure(curve).l_p / 1.2) as usize + 1;
             return Err(Error::TooCoarse { n, dl, needed });
         }
         Ok(rope)

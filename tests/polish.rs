@@ -143,9 +143,35 @@ fn the_hopf_link_lies_on_both_sides_of_its_exact_length() {
 }
 
 #[test]
+fn far_and_slid_vertices_are_no_obstacle() {
+    let tight = polished(&rough(), 160).best();
+    let mut far = tight.clone();
+    far.vertices_mut().iter_mut().for_each(|v| *v += 1e5);
+    let mut slid = tight.clone();
+    for i in (0..160).step_by(2) {
+        let onward = tight.vertices()[i + 1] - tight.vertices()[i];
+        slid.vertices_mut()[i] += 0.02 * onward;
+    }
+    for curve in [far, slid] {
+        let status = polished(&curve, 160).status();
+        assert_eq!(status.outcome, Outcome::Tight, "{status:?}");
+        // Bead positions in the grooves of so coarse a rope differ.
+        assert!(status.best.l_p < 34., "{status:?}");
+    }
+}
+
+#[test]
 fn what_cannot_be_polished_is_refused() {
     let flat = [[0., 0., 0.], [2., 2., 0.], [2., 0., 0.], [0., 2., 0.]].map(DVec3::from);
     let crossing = Curve::new(vec![flat.to_vec()]).unwrap();
     assert!(matches!(Polish::new(&crossing, 100, false, 0), Err(Error::SelfCrossing { .. })));
     assert!(matches!(Polish::new(&rough(), 12, false, 0), Err(Error::TooCoarse { .. })));
+    // Two turns of a thin trefoil so close together that 40 edges would mix them up.
+    let close = |i: usize| {
+        let t = TAU * i as f64 / 400.;
+        let r = 2. + 0.05 * (3. * t).cos();
+        DVec3::new(r * (2. * t).cos(), r * (2. * t).sin(), 0.05 * (3. * t).sin())
+    };
+    let large = Curve::new(vec![(0..400).map(close).collect()]).unwrap();
+    assert!(matches!(Polish::new(&large, 40, false, 0), Err(Error::TooCoarse { .. })));
 }

@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -55,10 +56,6 @@ class Job:
     checkpoint: Path | None = None
     resume: bool = False
 
-    def files_of(self, n: int) -> list[str]:
-        """Return the files that belong to one n."""
-        return [paths[n] for paths in (self.outputs, self.forces) if n in paths]
-
     def files(self) -> list[str]:
         """Return the files that the job writes."""
         paths = [*self.outputs.values(), *self.forces.values()]
@@ -97,7 +94,7 @@ def run(job: Job, watch: Callable[[Progress], None]) -> Iterator[Result]:
     """Do a job, giving each row when its vertices are on the disk; `watch` may raise `Stopped`."""
     try:
         file = formats.read(job.source)
-        kept = [n for n in job.outputs if job.resume and all(map(os.path.isfile, job.files_of(n)))]
+        kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
         for n in kept:
             yield _kept(job, n)
         if todo := set(job.outputs) - set(kept):
@@ -110,17 +107,26 @@ def _kept(job: Job, n: int) -> Result:
     """Give the row of an output that is there from an earlier run."""
     output = job.outputs[n]
     try:
-        measures = measured(output)[1]
+        file, measures = measured(output)
+        fitted = None if job.method == "sono" else forces(file.components)
+        if fitted and n in job.forces and not os.path.isfile(job.forces[n]):
+            contacts.write(job.forces[n], file.components, fitted)
     except FormatError as error:
         return Result(None, str(error))
     if measures.n != n:
         return Result(None, f"{output}: has {measures.n} vertices, not n = {n}; move it away")
-    if job.method == "sono":
-        good = max(measures.dispersion, abs(1 - measures.r_s)) <= _tolerance(job)
+    good = max(measures.dispersion, abs(1 - measures.r_s)) <= _tolerance(job)
+    if fitted is None:
         return _judged(job, _rope_row(job, output, measures, SETTLED if good else STUCK))
-    residual = forces(formats.read(output).components).residual
-    status = TIGHT if residual <= KEPT_RESIDUAL else STUCK
-    return _judged(job, _rope_row(job, output, measures, status, residual=residual))
+    # Only the run itself could tell that mu was reached; that it says so is checked as far as may be.
+    good = good and _says_tight(output) and fitted.residual <= KEPT_RESIDUAL
+    row = _rope_row(job, output, measures, TIGHT if good else STUCK, residual=fitted.residual)
+    return _judged(job, row)
+
+
+def _says_tight(output: str) -> bool:
+    header = re.compile(rf"^# .*: {TIGHT}, rope radius R_s = 1$", re.MULTILINE)
+    return header.search(formats.load(output)[1]) is not None
 
 
 class _Task:
@@ -133,6 +139,7 @@ class _Task:
         self.todo = todo
         self.identity = _identity(job, file)
         self.told = False
+        self.failed: dict[int, str] = {}
         self.run = self.restored() or self.begun()
         self.end = time.monotonic() + (job.time_limit or math.inf)
         # At once, so that a checkpoint that cannot be written is noticed before hours are spent.
@@ -140,6 +147,8 @@ class _Task:
 
     def results(self, watch: Callable[[Progress], None]) -> Iterator[Result]:
         """Tighten at each n in turn. Raises `FormatError` if the curve cannot be tightened at all."""
+        for known in self.failed.values():  # from before the run was stopped
+            yield Result(None, known)
         while self.run.targets:
             n = self.run.targets[0]
             try:
@@ -151,6 +160,7 @@ class _Task:
                 trouble = _located(error, self.file)
                 if self.run.curve is self.run.start and not self.run.shapes:
                     raise trouble from error
+                self.failed[n] = str(trouble)
                 yield Result(None, str(trouble))
             else:
                 if n in self.todo:
@@ -189,7 +199,9 @@ class _Task:
         self.told = True
         found = Counter(f"{length:.4f}" for length in sorted(tight.shapes))
         hits = ", ".join(f"{length} ({times} of them)" for length, times in found.items())
-        return f"{self.job.name}: {len(tight.shapes)} trials ended at L_a {hits}; the shortest was taken"
+        n = sum(map(len, self.run.shape or []))
+        trials = f"{len(tight.shapes)} trials at n = {n}"
+        return f"{self.job.name}: {trials} ended at L_a {hits}; the shortest was taken"
 
     def deliver(self, n: int, tight: Tight, status: str) -> tuple[Row, str | None]:
         """Write what was asked for at n."""
@@ -231,13 +243,17 @@ class _Task:
         try:
             state = json.loads(path.read_text(encoding="utf-8"))
             same = state.pop("identity") == self.identity
+            failed = {int(n): str(trouble) for n, trouble in state.pop("failed").items()}
             run = Run.restore(state) if same else None
         except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
             raise FormatError(f"{path}: is no checkpoint ({error}); remove it") from error
         if run is None:
             raise FormatError(f"{path}: is of another curve, n or setting; repeat those or remove it")
         # An output that was written and then lost has to be made from the beginning.
-        return run if self.todo <= set(run.targets) else None
+        if not self.todo <= {*run.targets, *failed}:
+            return None
+        self.failed = failed
+        return run
 
     def save(self) -> None:
         """Write the checkpoint, if there is to be one."""
@@ -245,7 +261,7 @@ class _Task:
         if self.job.checkpoint:
             try:
                 with formats.atomic_text(self.job.checkpoint) as stream:
-                    json.dump(self.run.state() | {"identity": self.identity}, stream)
+                    json.dump(self.run.state() | {"identity": self.identity, "failed": self.failed}, stream)
             except OSError as error:
                 why = error.strerror or error
                 raise FormatError(f"{self.job.checkpoint}: cannot be written: {why}") from error
@@ -278,7 +294,9 @@ def _judged(job: Job, row: Row, note: str | None = None) -> Result:
         return Result(row, note=note)
     why = f"did not settle to {_tolerance(job):g}"
     if job.method != "sono":
-        why = f"did not get tight: forces are out of balance by {row['residual']:.1e}"
+        why = "did not get tight"
+        if row.get("mu") is not None:
+            why += f": the polish ended at mu = {row['mu']:.1e} with the residual {row['residual']:.1e}"
     return Result(row, f"{job.name}: n = {row['n']} {why}; {row['file']} has its best", note)
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
-from sono._core import Measures, Polish, PolishStatus, Status, Tightener
+from sono._core import CurveError, Measures, Polish, PolishStatus, Status, Tightener
 
 Curve = list[NDArray[np.float64]]
 Method = Literal["both", "sono", "polish"]
@@ -98,8 +98,9 @@ def measure(vertices: ArrayLike | Sequence[ArrayLike]) -> Measures:
 def forces(vertices: ArrayLike | Sequence[ArrayLike]) -> "Forces":
     """Find the forces that come nearest to balance on a curve, scaled to R_s = 1.
 
-    Beads at most 2.0001 apart may press against each other, and those whose radius is within 0.1 % of R may
-    withstand bending. Raises `CurveError` for a curve that is not embedded.
+    Beads at most 2.0001 apart may press against each other, those whose radius is within 0.1 % of R may
+    withstand bending, and edges within 1 % of the longest may be in tension: a bead rope's edges are equal.
+    Raises `CurveError` for a curve that is not embedded.
     """
     return Forces(*_core.balance(as_curve(vertices)))
 
@@ -164,9 +165,10 @@ class Tight:
     SONO the dispersion and overlaps that the settings ask for. `shapes` has the L_a of each trial's shape,
     all at the same coarse n. `sweeps`, `factorisations` and `seconds` count from the start of the run.
 
-    Where the polish came last, `residual` is the largest force left over, tension being 1, `mu` the product
-    of each constraint's multiplier and slack, `excess` (constraints times mu) tells by how much this rope is
-    longer than the local minimum, and `forces` are those in the rope; otherwise these are None.
+    Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
+    those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
+    constraint's multiplier and slack, and `excess`, the sum of these products, tells by how much a converged
+    rope is longer than the local minimum. Otherwise these are None.
     """
 
     curve: Curve
@@ -240,17 +242,20 @@ class Run:
             self.rungs = self._climb_to_target() if self.method == "polish" else [("collapse", 0)]
 
     def tighten(self, watch: Callable[[Progress], None] = lambda _: None) -> Tight:
-        """Tighten at the first target; `watch` is called between slices and may raise `Stopped`.
+        """Tighten at the first target; `watch` is called between slices and rungs and may raise `Stopped`.
 
         Called once more it gives the same again. Raises `CurveError` for a curve that cannot be tightened,
         or not with so few vertices.
         """
         while True:
             self._climb(watch)
-            if self.rungs not in ([("settle", self.targets[0])], [("polish", self.targets[0])]):
+            if self._is_last():
+                return self._tight(self._better())
+            if self.rungs == [("polish", self.targets[0])]:
+                self.rival, self.worker = cast("Polish", self._better()), None
+                self.offset += 1
+            else:
                 self._leave()
-            elif self._last_offset():
-                return self._tight(self.worker)
 
     def next_target(self) -> None:
         """Turn from the first target, reached or out of reach, to the next."""
@@ -304,31 +309,39 @@ class Run:
     def _climb(self, watch: Callable[[Progress], None]) -> None:
         """Run the first rung to its end."""
         stage, n = self.rungs[0]
+
+        def look(status: Status | PolishStatus) -> None:
+            watch(Progress(stage, n or status.best.n, self.targets[0], len(self.shapes) + 1, status))
+
         if self.worker is None:
             self.worker = self._engine(stage, n)
+            # Here too, since many a rung takes less than a slice.
+            look(self.worker.status())
         while True:
             start = time.perf_counter()
             status = self.worker.advance(SLICE)
             self.seconds += time.perf_counter() - start
             if status.outcome != "running":
                 return
-            watch(Progress(stage, n or status.best.n, self.targets[0], len(self.shapes) + 1, status))
+            look(status)
 
-    def _last_offset(self) -> bool:
-        """Let the polish that is done compete with the best before it; tell whether it was the last."""
-        done, n = self.worker, self.targets[0]
-        offsets = OFFSETS if n <= OFFSETS_TO and sum(map(len, self.curve)) != n else 1
-        if not isinstance(done, Polish) or self.offset == offsets:
-            return True
-        if self.rival:
-            better, worse = sorted((done, self.rival), key=_rank)
-            self.worker, self.factorisations = better, self.factorisations + worse.status().factorisations
-        self.offset += 1
-        if self.offset == offsets:
-            self.rival = None
-            return True
-        self.rival, self.worker = cast("Polish", self.worker), None
-        return False
+    def _is_last(self) -> bool:
+        """Tell whether nothing but the worker is between here and the first target."""
+        n = self.targets[0]
+        if self.rungs != [("polish", n)]:
+            return self.rungs == [("settle", n)]
+        several = n <= OFFSETS_TO and sum(map(len, self.curve)) != n
+        return self.offset + 1 == (OFFSETS if several else 1)
+
+    def _better(self) -> Polish | Tightener:
+        """Return the better of the worker, which is done, and its rival; the other one's work is added up."""
+        assert self.worker is not None
+        if not (self.rival and isinstance(self.worker, Polish)):
+            return self.worker
+        better, worse = sorted((self.worker, self.rival), key=_rank)
+        self.factorisations += worse.status().factorisations
+        self.worker, self.rival = better, None
+        return better
 
     def _engine(self, stage: Stage, n: int) -> Tightener | Polish:
         """Begin a rung."""
@@ -339,7 +352,13 @@ class Run:
         settings = self.settings | {"seed": seed}
         if self.method == "both":
             settings |= _anneal_of(trial, default_settings() | self.settings)
-        return Tightener(self.curve, stage, n, json.dumps(settings))
+        try:
+            return Tightener(self.curve, stage, n, json.dumps(settings))
+        except CurveError:
+            if self.method != "both" or stage != "anneal" or n == self.rungs[1][1]:
+                raise
+            # So few beads are too coarse for some component; those of the shape may do.
+            return Tightener(self.curve, stage, self.rungs[1][1], json.dumps(settings))
 
     def _leave(self) -> None:
         """Take over what the first rung has reached, and plan the next ones if there are none."""
@@ -398,14 +417,13 @@ class Run:
         )
         if isinstance(status, Status):
             return replace(tight, sweeps=self.sweeps + status.sweeps)
-        return replace(
-            tight,
-            factorisations=self.factorisations + status.factorisations,
-            residual=status.residual,
-            mu=status.mu,
-            excess=status.excess,
-            forces=Forces(*cast("Polish", worker).forces()),
-        )
+        tight = replace(tight, factorisations=self.factorisations + status.factorisations, mu=status.mu)
+        if not tight.converged:
+            # The best state is not the last, to which the multipliers belong.
+            fitted = forces(tight.curve)
+            return replace(tight, residual=fitted.residual, forces=fitted)
+        own = Forces(*cast("Polish", worker).forces())
+        return replace(tight, residual=status.residual, excess=status.excess, forces=own)
 
     def _anneal(self) -> list[Rung]:
         """Plan SONO's rungs from the collapsed rope to the next target."""

@@ -43,10 +43,12 @@ impl Forces {
     }
 }
 
-/// Two beads may press against each other when they are at most so far apart, R = 1, and a bead may
-/// withstand bending when its radius is within this of R.
+/// Two beads may press against each other when at most so far out of touch, R = 1; a bead may
+/// withstand bending when its radius, and an edge be in tension when its length is within this share
+/// of the bound, which for edges is the longest.
 const TOUCHING: f64 = 1e-4;
 const BENT: f64 = 1e-3;
+const SLACK: f64 = 1e-2;
 /// Share of the way to the boundary that a step goes, by how much it tries to lower mu, and where
 /// that ends.
 const TO_THE_BOUNDARY: f64 = 0.99;
@@ -57,32 +59,34 @@ const MOST_ITERATIONS: usize = 200;
 /// The forces that come nearest to balance on a curve as it is, scaled to R_s = 1: tensions,
 /// couples and contact forces are sought by non-negative least squares.
 ///
-/// Beads at most 2.0001 apart may press against each other, and those whose radius is within 0.1 % of
-/// R may withstand bending, so a rope that is tight to fewer digits has a large residual. That is the
+/// Beads at most 2.0001 apart may press against each other, those whose radius is within 0.1 % of R
+/// may withstand bending, and edges within 1 % of the longest may be in tension (a bead rope's edges
+/// are equal), so a rope that is tight to fewer digits has a large residual. That is the
 /// largest coordinate of what is left over on a bead, in units of the tension: 0 for a critical point
 /// of length.
 pub fn balance(curve: &Curve) -> Forces {
     let mut curve = curve.clone();
     curve.scale(1. / measure(&curve).r_s);
-    let l: Vec<_> = (0..curve.components())
-        .map(|c| curve.component_length(c) / curve.range(c).len() as f64)
-        .collect();
+    let l: Vec<_> =
+        (0..curve.components()).map(|c| curve.edge_lengths(c).fold(0., f64::max)).collect();
     let mut terms: Vec<_> = chain_terms(&curve, &l).collect();
-    let least: Vec<_> = l.iter().map(|&l| least_index_distance(l)).collect();
+    // By arclength, since curves that are no ropes may have thousands of vertices in a little place.
+    let least = l.iter().map(|&l| (least_index_distance(l) as f64 - 0.5) * l).collect();
     let reach = 2. + TOUCHING;
     let mut pairs = vec![];
-    for_each_close_pair(&curve, &Separation::by_index(&curve, &least), reach, |i, j, _| {
+    for_each_close_pair(&curve, &Separation::by_arclength(&curve, least), reach, |i, j, _| {
         pairs.push((i as u32, j as u32));
         reach
     });
     pairs.sort_unstable();
     terms.extend(pairs.iter().map(|&(i, j)| Term::contact(curve.vertices(), i, j)));
     let n = curve.n();
-    for bend in &mut terms[n..2 * n] {
-        let most = l[bend.component].powi(2);
-        if bend.y.length() < (1. - BENT) * most {
+    for (k, t) in terms[..2 * n].iter_mut().enumerate() {
+        let l = l[t.component];
+        let least = if k < n { (1. - SLACK) * l } else { (1. - BENT) * l * l };
+        if t.y.length() < least {
             // No force: without a gradient its multiplier has no effect.
-            (bend.y, bend.h) = (DVec3::ZERO, [0.; 2]);
+            (t.y, t.h) = (DVec3::ZERO, [0.; 2]);
         }
     }
     let z = least_squares(&curve, &terms);

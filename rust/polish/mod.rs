@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::curve::Curve;
 use crate::error::Result;
-use crate::inscribed::rope_curve;
+use crate::inscribed::{refine, rope_curve};
 use crate::measures::{Measures, measure};
 use crate::neighbours::{Separation, for_each_close_pair};
 use crate::procedures::least_index_distance;
@@ -64,6 +64,9 @@ const LONGEST_WAY: f64 = 0.1;
 const UNEQUAL: f64 = 0.1;
 /// Iterations in which a rope gets tight or never does.
 const MOST_ITERATIONS: u64 = 3000;
+/// A rope that cannot move begins anew with so many times its first mu, so often.
+const MORE_ROOM: f64 = 10.;
+const MOST_RESTARTS: u32 = 3;
 
 /// Where a [`Polish`] stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +83,8 @@ pub struct Status {
     pub residual: f64,
     /// Barrier parameter: each constraint's product of multiplier and slack.
     pub mu: f64,
-    /// (Number of constraints) mu: by how much the length exceeds the local minimum.
+    /// Sum of all products of multiplier and slack, about (number of constraints) mu: in balance, by
+    /// how much the length exceeds the local minimum.
     pub excess: f64,
     /// Measures of the best state so far, R_s = 1.
     pub best: Measures,
@@ -105,6 +109,8 @@ pub struct Polish {
     newton: Newton,
     iterations: u64,
     residual: f64,
+    excess: f64,
+    restarts: u32,
     outcome: Outcome,
     best: Curve,
     shortest: f64,
@@ -129,32 +135,48 @@ impl Polish {
         let is_rope = given.r_c.is_some() && given.dispersion < UNEQUAL;
         let made = if is_rope { None } else { Some(rope_curve(curve)?) };
         let mut curve = Rope::resampled(made.as_ref().unwrap_or(curve), n, seed)?.curve().clone();
-        let best = scaled(&curve, 1.);
-        let shortest = best.length();
-        let dl = shortest / n as f64;
-        let mu = FIRST_MU * dl.powi(3);
-        // Room for the barrier: an edge of tension 1 has the slack 2 l mu, contacts get some too.
-        curve.scale(1. + 0.02 * mu / dl);
-        let l: Vec<_> = (0..curve.components())
-            .map(|c| curve.edge_lengths(c).fold(0., f64::max) + mu)
-            .collect();
-        Ok(Self {
-            least: l.iter().map(|&l| least_index_distance(l)).collect(),
-            chain: chain_terms(&curve, &l).map(|t| mu / t.g).collect(),
+        let bound = |t: &Term, l: &[f64]| 1e-3 * l[t.component].powi(6);
+        let l = longest(&curve);
+        if chain_terms(&curve, &l).any(|t| t.g < -bound(&t, &l)) {
+            // Edges too unequal for its own bends; equal ones lie on K_P.
+            curve = refine(&curve, n, 0.);
+            curve.scale(1. / measure(&curve).r_s);
+        }
+        curve.centre();
+        let dl = curve.length() / n as f64;
+        let last_mu = if passing { LAST_MU.max(PASSING_MU * dl.powi(3)) } else { LAST_MU };
+        let mut polish = Self {
+            least: first_least(&curve, &longest(&curve)),
+            l: vec![],
+            chain: vec![],
             contacts: vec![],
-            mu,
-            last_mu: if passing { PASSING_MU * dl.powi(3) } else { LAST_MU },
-            first_mu: mu,
+            mu: 0.,
+            last_mu,
+            first_mu: 0.,
             way: (2. * dl * dl).min(LONGEST_WAY),
             newton: Newton::default(),
             iterations: 0,
             residual: f64::MAX,
+            excess: f64::MAX,
+            restarts: 0,
             outcome: Outcome::Running,
-            best,
-            shortest,
+            shortest: measure(&curve).l_p,
+            best: curve.clone(),
             curve,
-            l,
-        })
+        };
+        polish.begin(last_mu.max(FIRST_MU * dl.powi(3)));
+        Ok(polish)
+    }
+
+    /// Begins at the best state so far with barrier parameter `mu`.
+    fn begin(&mut self, mu: f64) {
+        let mut curve = self.best();
+        // Room for the barrier: an edge of tension 1 has the slack 2 l mu, contacts get some too.
+        curve.scale(1. + 0.02 * mu * curve.n() as f64 / curve.length());
+        self.l = longest(&curve).into_iter().map(|l| l + mu).collect();
+        self.chain = chain_terms(&curve, &self.l).map(|t| mu / t.g).collect();
+        self.contacts.clear();
+        (self.curve, self.mu, self.first_mu) = (curve, mu, mu);
     }
 
     /// Works for about `budget`, unless done before.
@@ -175,9 +197,7 @@ impl Polish {
         let z = self.multipliers();
         while self.is_centred(&terms, &z) {
             if self.mu <= self.last_mu {
-                // The one in balance, though others may be shorter in the last digit.
-                self.best.clone_from(&self.curve);
-                self.outcome = Outcome::Tight;
+                self.end(Outcome::Tight);
                 return self.outcome;
             }
             self.mu = (FALL * self.mu).min(self.mu.powf(FALL_POWER)).max(self.last_mu);
@@ -186,11 +206,23 @@ impl Polish {
         let step = self.newton.step(curve, l, &terms, &z, (self.mu, self.range()), &bystanders);
         let moved = step.is_some_and(|step| self.take(step, &terms, &z, &bystanders));
         self.iterations += 1;
-        if !moved || self.iterations == MOST_ITERATIONS {
-            let tight = self.residual <= TIGHT && self.mu <= self.last_mu;
-            self.outcome = if tight { Outcome::Tight } else { Outcome::Stuck };
+        if !moved && self.residual <= TIGHT && self.mu <= self.last_mu {
+            // As far as the digits go.
+            self.end(Outcome::Tight);
+        } else if self.iterations == MOST_ITERATIONS || (!moved && self.restarts == MOST_RESTARTS) {
+            self.outcome = Outcome::Stuck;
+        } else if !moved {
+            // With so little room for its rearrangement the rope has run into a corner.
+            self.restarts += 1;
+            self.begin(MORE_ROOM * self.first_mu);
         }
         self.outcome
+    }
+
+    /// Ends with the rope as it is, though one before may have been shorter in the last digit.
+    fn end(&mut self, outcome: Outcome) {
+        self.best.clone_from(&self.curve);
+        self.outcome = outcome;
     }
 
     fn multipliers(&self) -> Vec<f64> {
@@ -210,7 +242,7 @@ impl Polish {
         for (least, &l) in self.least.iter_mut().zip(&self.l) {
             *least = least_index_distance(l).max(*least);
         }
-        let reach = 2. + (2. * self.way).max(0.3 * hat);
+        let reach = 2. + (2.5 * self.way).max(0.4 * hat);
         let mut near = vec![];
         let separation = Separation::by_index(&self.curve, &self.least);
         for_each_close_pair(&self.curve, &separation, reach, |i, j, _| {
@@ -241,12 +273,12 @@ impl Polish {
     fn is_centred(&mut self, terms: &[Term], z: &[f64]) -> bool {
         let hat = self.range();
         self.residual = imbalance(&self.curve, terms, z);
-        let complementarity = terms
-            .iter()
-            .zip(z)
-            .map(|(t, z)| (z * t.g - self.mu * t.weight(hat).0).abs())
-            .fold(0., f64::max);
-        self.residual.max(complementarity) < CENTRED * self.mu
+        self.excess = terms.iter().zip(z).map(|(t, z)| z * t.g).sum();
+        self.residual < CENTRED * self.mu
+            && terms
+                .iter()
+                .zip(z)
+                .all(|(t, z)| (z * t.g - self.mu * t.weight(hat).0).abs() < CENTRED * self.mu)
     }
 
     /// Goes as far along a step as constraints and the barrier function allow.
@@ -266,7 +298,12 @@ impl Polish {
         };
         let merit = |curve: &Curve, l: &[f64]| {
             let v = curve.vertices();
-            let chain = chain_terms(curve, l).map(|t| if t.g > 0. { t.g.ln() } else { f64::NAN });
+            // Edges below half their length, too, are out of bounds: a strand would fit between.
+            let least_edge =
+                |k: usize, t: &Term| k >= v.len() || t.g < 0.75 * l[t.component].powi(2);
+            let chain = chain_terms(curve, l)
+                .enumerate()
+                .map(|(k, t)| if t.g > 0. && least_edge(k, &t) { t.g.ln() } else { f64::NAN });
             let contacts = near().map(|(i, j)| clamped_logarithm(Term::contact(v, i, j).g, hat));
             length(curve, l) - mu * chain.chain(contacts).sum::<f64>()
         };
@@ -301,9 +338,9 @@ impl Polish {
         self.newton.learn(a);
         let thinnest = 0.01 * self.l.iter().copied().fold(f64::MAX, f64::min).powi(2);
         self.way = (4. * a * longest).clamp(thinnest.min(LONGEST_WAY), LONGEST_WAY);
-        let length = length(&self.curve, &self.l);
-        if length < self.shortest {
-            self.shortest = length;
+        let l_p = measure(&self.curve).l_p;
+        if l_p < self.shortest {
+            self.shortest = l_p;
             self.best.clone_from(&self.curve);
         }
         true
@@ -331,10 +368,30 @@ impl Polish {
             factorisations: self.newton.factorisations(),
             residual: self.residual,
             mu: self.mu,
-            excess: (self.chain.len() + self.contacts.len()) as f64 * self.mu,
+            excess: self.excess,
             best: measure(&self.best()),
         }
     }
+}
+
+/// Least index distances of contacts: those of the rule, or more where beads of a coarse rope that the
+/// measures let overlap (theirs is pi MinRad, not pi R_c) would break it.
+fn first_least(curve: &Curve, l: &[f64]) -> Vec<usize> {
+    let mut least: Vec<_> = l.iter().map(|&l| least_index_distance(l)).collect();
+    let separation = Separation::by_index(curve, &least);
+    for_each_close_pair(curve, &separation, 2. - 1e-12, |i, j, _| {
+        if let Some(distance) = curve.index_distance(i, j) {
+            let least = &mut least[curve.component_of(i)];
+            *least = (distance + 1).max(*least);
+        }
+        2. - 1e-12
+    });
+    least
+}
+
+/// The longest edge of each component.
+fn longest(curve: &Curve) -> Vec<f64> {
+    (0..curve.components()).map(|c| curve.edge_lengths(c).fold(0., f64::max)).collect()
 }
 
 fn length(curve: &Curve, l: &[f64]) -> f64 {
@@ -349,7 +406,8 @@ fn imbalance(curve: &Curve, terms: &[Term], z: &[f64]) -> f64 {
         t.gradient().for_each(|(i, gradient)| forces[i] -= *z * gradient);
         pull[t.component] -= z * t.h[0];
     }
-    let on_beads = forces.iter().map(|f| f.abs().max_element()).fold(0., f64::max);
+    let on_beads = forces.iter().map(|f| f.abs().max_element());
     let on_edges = pull.iter().zip(curve.ranges()).map(|(p, range)| p.abs() / range.len() as f64);
-    on_edges.fold(on_beads, f64::max)
+    // One that is not a number is the largest.
+    on_beads.chain(on_edges).fold(0., |most, f| if f <= most { most } else { f })
 }

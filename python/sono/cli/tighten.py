@@ -74,7 +74,9 @@ def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int
     help="File or folder/ for the forces in the tight rope, as TSV; in a folder NAME.nN.contacts.tsv.",
 )
 @click.option("--force", is_flag=True, help="Overwrite files that are there.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the anneal.")
+@click.option(
+    "--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="Seed of the anneals.  [default: 0]"
+)
 @click.option(
     "--time-limit",
     type=click.FloatRange(0, min_open=True),
@@ -138,6 +140,8 @@ def command(
     fresh = not (force or resume)
     if contacts and method == "sono":
         raise click.UsageError("--contacts needs the polish; use the method both or polish")
+    if output == contacts == "-":
+        raise click.UsageError("standard output cannot hold both vertices and contacts; name a file for one")
     work = [
         Job(
             source,
@@ -160,7 +164,8 @@ def command(
     if "-" in sources:
         # Here, since a signal does not reach a thread that waits for input.
         sys.stdin = io.TextIOWrapper(io.BytesIO(sys.stdin.buffer.read()))
-    sys.exit(_Batch(_table(format_, columns, output, quiet), quiet).run(work, jobs))
+    table = _table(format_, columns, "-" in (output, contacts), quiet)
+    sys.exit(_Batch(table, quiet).run(work, jobs))
 
 
 class _Batch:
@@ -283,9 +288,9 @@ def _bar(quiet: bool) -> "Bar":
     )
 
 
-def _table(format_: str | None, columns: list[str], output: str | None, quiet: bool) -> tables.TableWriter:
-    """The table, which leaves standard output to the vertices if they go there."""
-    if output != "-":
+def _table(format_: str | None, columns: list[str], taken: bool, quiet: bool) -> tables.TableWriter:
+    """The table, which leaves standard output to vertices or contacts if they go there."""
+    if not taken:
         return options.writer(format_, columns)
     return options.writer(format_, columns, io.StringIO() if quiet else sys.stderr)
 
@@ -316,8 +321,11 @@ def _forces(path: str | None, outputs: dict[int, str], name: str, sources: int) 
     """Say where the forces for each n go."""
     if path is None:
         return {}
+    if not path:
+        raise click.UsageError("--contacts needs the name of a file or folder/")
     if path.endswith(("/", os.sep)) or os.path.isdir(path):
-        return {n: os.path.join(path, f"{name}.n{n}.contacts.tsv") for n in outputs}
+        stems = {n: f"{name}.n{n}" if file == "-" else Path(file).stem for n, file in outputs.items()}
+        return {n: os.path.join(path, f"{stem}.contacts.tsv") for n, stem in stems.items()}
     if len(outputs) * sources > 1:
         raise click.UsageError("--contacts names one file, but there are several results; name a folder/")
     return dict.fromkeys(outputs, path)

@@ -16,7 +16,7 @@ from sono.formats import text, vect
 from sono.formats.files import atomic_text, load, save
 from sono.formats.vertices import FormatError, VertexFile
 
-__all__ = ["FORMATS", "FormatError", "VertexFile", "atomic_text", "read", "save", "write"]
+__all__ = ["FORMATS", "FormatError", "VertexFile", "atomic_text", "load", "read", "save", "write"]
 
 
 class Format(Protocol):
