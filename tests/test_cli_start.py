@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from conftest import Sono
 
-from sono import formats, library
+from sono import closures, formats, library
+from sono.closures import Curve
+from sono.scramble import scramble
 
 
-def same(path: Path, curve: library.Curve) -> bool:
+def same(path: Path, curve: Curve) -> bool:
     read = formats.read(path).components
     return len(read) == len(curve) and all(map(np.array_equal, read, curve))
 
@@ -24,12 +26,12 @@ def test_a_name(folder: Path, sono: Sono) -> None:
 
 def test_a_braid_word(folder: Path, sono: Sono) -> None:
     assert sono("start", "--braid", "1, -2 1 -2", "-o", "out.txt").exit_code == 0
-    assert same(folder / "out.txt", library.braid([1, -2, 1, -2]))
+    assert same(folder / "out.txt", closures.braid([1, -2, 1, -2]))
 
 
 def test_scrambled(folder: Path, sono: Sono) -> None:
     assert sono("start", "3_1", "--scramble", "5", "-o", "out.txt").exit_code == 0
-    assert same(folder / "out.txt", library.scramble(library.start("3_1"), 5))
+    assert same(folder / "out.txt", scramble(library.start("3_1"), 5))
 
 
 def test_the_suffix_gives_the_format(folder: Path, sono: Sono) -> None:
@@ -39,7 +41,7 @@ def test_the_suffix_gives_the_format(folder: Path, sono: Sono) -> None:
 
 
 def test_list(sono: Sono) -> None:
-    assert sono("start", "--list").stdout.split() == list(library.NAMES)
+    assert sono("start", "--list").stdout.split() == list(library.names())
 
 
 def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:

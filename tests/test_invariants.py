@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from invariants import (
+
+from sono.closures import braid, chain, mirror, torus
+from sono.invariants import (
     Floats,
     alexander,
     crossings,
@@ -15,8 +17,8 @@ from invariants import (
     signature,
     simplify,
 )
-
-from sono.library import braid, chain, mirror, scramble, start, torus
+from sono.library import start
+from sono.scramble import scramble
 
 ROOTS = [cmath.exp(2j * math.pi / k) for k in (2, 3, 5)]
 

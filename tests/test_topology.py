@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from invariants import fingerprint
 
 from sono import Tight, formats, library, tighten
+from sono.invariants import fingerprint
+from sono.scramble import scramble
 
 KNOTS = Path(__file__).parent.parent / "knots"
 NAMES = sorted(path.stem for path in KNOTS.glob("*.txt"))
@@ -50,7 +51,7 @@ def test_the_polish_alone_keeps_the_type(name: str) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_an_entangled_unknot_unties_itself(seed: int) -> None:
-    entangled = library.scramble(library.start("unknot"), seed)
+    entangled = scramble(library.start("unknot"), seed)
     tight = tighten(entangled, 60, method="sono", seed=seed, settings=QUICK)
     assert_valid(tight)
     assert tight.measures.l_p == pytest.approx(2 * np.pi, rel=0.01)
@@ -59,7 +60,7 @@ def test_an_entangled_unknot_unties_itself(seed: int) -> None:
 @pytest.mark.parametrize("name", ["3_1", "4_1", "chain3"])
 def test_a_scrambled_knot_finds_its_way_back(name: str) -> None:
     start = library.start(name)
-    entangled = library.scramble(start, 1)
+    entangled = scramble(start, 1)
     tight = tighten(entangled, COARSE[name], trials=2)
     assert_valid(tight)
     assert fingerprint(tight.curve) == fingerprint(start)

@@ -1,36 +1,31 @@
-"""Starting conformations: loose knots and links that a tightening run begins with.
+"""Starting conformations by name: the loose knots and links that a tightening begins with.
 
-Every curve here is drawn for a rope of radius about 1, so its length is close to its ropelength, and is
-sampled finely enough (turning angles below about 20 degrees) that the polygon has the knot type of the smooth
-curve.
+Prime knots have the names of KnotInfo: Rolfsen's up to 10 crossings, but with 10_83 and 10_86 as in the
+corrected editions of his book (older files have them the other way round), and 10_161 to 10_165 without the
+Perko pair: his 10_161 and 10_162 are one knot, so his 10_163 to 10_166 are 10_162 to 10_165 here. "m8_20" is
+the mirror image of 8_20. With the extra sono[knotinfo] there are also all knots to 13 crossings, "11a_1" to
+"13n_5110". A knot has the handedness of its braid word in KnotInfo, where a positive generator is a
+right-handed crossing, so 3_1 is the right-handed trefoil.
 
->>> len(torus(2, 3)), len(torus(2, 4)), len(braid([1, -2, 1, -2])), len(start("chain3"))
-(1, 2, 1, 3)
+>>> len(start("3_1")), len(start("m8_18")), len(start("10_165", variant=3)), len(start("chain3"))
+(1, 1, 1, 3)
 """
 
+import csv
 import difflib
-import math
+import json
 import re
-from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from functools import cache
+from importlib import resources
 
-import numpy as np
-from numpy.typing import NDArray
+from sono.closures import Curve, Strokes, braid, chain, grid, mirror, shuffled, torus
+from sono.scramble import scramble
 
-Curve: TypeAlias = list[NDArray[np.float64]]
-"""One (n_i, 3) array a component: the vertices of a closed polygon, the first not repeated at the end."""
-
-Map: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
-"""A map of space, which takes points (m, 3) to points (m, 3)."""
-
-# Torus knots by their type, the others by a braid word as KnotInfo lists it (https://knotinfo.math.indiana.edu,
-# "Braid Notation"). KnotInfo's table and ours may differ by a mirror image: here a positive generator is a
-# right-handed crossing, so 3_1 is the right-handed trefoil.
-_TABLE = {
+# Those that are drawn best in another way than as the braids of the data file.
+_DRAWN = {
     "unknot": "chain1",
     "0_1": "chain1",
     "3_1": "T(2,3)",
-    "4_1": "1 -2 1 -2",
     "5_1": "T(2,5)",
     "7_1": "T(2,7)",
     "8_19": "T(3,4)",
@@ -41,232 +36,89 @@ _TABLE = {
     "chain3": "chain3",
 }
 
-NAMES = tuple(_TABLE)
-"""The names `start` knows, besides torus types such as "T(2,5)" and braid words such as "1 -2 1 -2"."""
-
 _TORUS = re.compile(r"t\s*\(\s*(-?\d+)\s*,\s*(-?\d+)\s*\)", re.IGNORECASE)
 _CHAIN = re.compile(r"chain\s*(\d+)", re.IGNORECASE)
 _BRAID = re.compile(r"-?\d+([\s,]+-?\d+)+")
+_KNOTINFO = re.compile(r"1[123][an]_\d+")
 
 
-def start(name: str) -> Curve:
-    """Return the starting conformation called `name`, in units of about one rope radius.
+def table(name: str) -> list[dict[str, str]]:
+    """Return the rows of a table that is shipped with the package, "knots" or "published"."""
+    text = resources.files("sono").joinpath("data", f"{name}.tsv").read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines, delimiter="\t"))
 
-    `name` is one of `NAMES`, a torus type "T(p,q)", a chain of rings "chain3", or a braid word "1 -2 1 -2" of
-    two generators or more; letter case and surrounding space do not matter. Raises ValueError, with the
-    nearest known name, for anything else.
+
+@cache
+def _knots() -> dict[str, dict[str, str]]:
+    return {row["knot"]: row for row in table("knots")}
+
+
+def names() -> list[str]:
+    """Return the names that are built in, besides torus types such as "T(2,5)" and braid words."""
+    return [*dict.fromkeys([*_knots(), *_DRAWN])]
+
+
+def start(name: str, variant: int = 0) -> Curve:
+    """Return a starting conformation of the knot called `name`, in units of about one rope radius.
+
+    `name` is one of `names()`, such a name with an m before it for the mirror image, a knot to 13 crossings
+    where sono[knotinfo] is installed, a torus type "T(p,q)", a chain of rings "chain3", or a braid word
+    "1 -2 1 -2" of two generators or more; letter case and surrounding space do not matter.
+
+    Variant 0 is a closed braid or a torus knot, ready to be tightened. Each further `variant` is another
+    conformation of the same type: random arc presentations of a knot in the tables, isotopic scrambles of
+    others. Raises ValueError, with the nearest known name, for anything else.
     """
-    known = {known.casefold(): spec for known, spec in _TABLE.items()}
-    spec = known.get(name.strip().casefold(), name.strip())
-    if match := _TORUS.fullmatch(spec):
+    if variant < 0:
+        raise ValueError(f"variant = {variant}: variants count from 0")
+    plain = name.strip()
+    if plain[:1].casefold() == "m":
+        return mirror(start(plain[1:], variant))
+    plain = {known.casefold(): known for known in names()}.get(plain.casefold(), plain)
+    row = _from_knotinfo(plain) if _KNOTINFO.fullmatch(plain) else _knots().get(plain)
+    if row and variant:
+        return grid(shuffled(_strokes(row["grid"]), variant))
+    curve = _drawn(_DRAWN.get(plain) or (row["braid"] if row else plain))
+    return scramble(curve, variant) if variant else curve
+
+
+def _drawn(name: str) -> Curve:
+    """Return the curve of a torus type, a chain or a braid word."""
+    if match := _TORUS.fullmatch(name):
         return torus(int(match[1]), int(match[2]))
-    if match := _CHAIN.fullmatch(spec):
+    if match := _CHAIN.fullmatch(name):
         return chain(int(match[1]))
-    if _BRAID.fullmatch(spec):
-        return braid([int(generator) for generator in re.findall(r"-?\d+", spec)])
-    near = difflib.get_close_matches(spec, NAMES, n=1)
+    if _BRAID.fullmatch(name):
+        return braid([int(generator) for generator in re.findall(r"-?\d+", name)])
+    if name == "10_166":
+        raise ValueError("unknown knot '10_166': Rolfsen's 10_166 is 10_165, as his 10_161 is his 10_162")
+    near = difflib.get_close_matches(name, names(), n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    raise ValueError(f"unknown knot {name!r}: {hint}Known are {', '.join(NAMES)}, T(p,q) and braid words")
+    known = "3_1 to 10_165, Hopf, chain3, T(p,q) and braid words"
+    raise ValueError(f"unknown knot {name!r}: {hint}Known are {known}")
 
 
-def torus(p: int, q: int, n: int | None = None) -> Curve:
-    """Return the torus knot or link T(p,q), which winds p times the long way round and q times the short way.
-
-    The minor radius of the torus is 1. There are g = gcd(p, q) components of n vertices each; by default n
-    gives turning angles of 15 to 20 degrees and is a multiple of q/g, so that the polygon has the (q/g)-fold
-    symmetry of the curve. pq > 0 is right-handed, pq < 0 its mirror image. Raises ValueError where p or q is
-    zero, or n is less than 3.
-    """
-    if p == 0 or q == 0:
-        raise ValueError(f"T({p},{q}) is no torus knot: p and q must not be zero")
-    components = math.gcd(p, q)
-    long, short = abs(p) // components, abs(q) // components
-    n = short * max(3, round(14 * (long + short) / short)) if n is None else n
-    if n < 3:
-        raise ValueError(f"a closed polygon needs at least 3 vertices, not {n}")
-    # q/p: the strands climb at 45 degrees, as in the tightest rope of two strands. 1: room in the hole.
-    major = 1 + short / long
-    time = 2 * np.pi * np.arange(n) / n
-    curve = []
-    for k in range(components):
-        around = long * time
-        through = short * time + 2 * np.pi * k / abs(p)
-        rho = major + np.cos(through)
-        # Turning clockwise as seen looking forward along the strand: a right-handed screw.
-        z = -math.copysign(1, p * q) * np.sin(through)
-        curve.append(np.column_stack([rho * np.cos(around), rho * np.sin(around), z]))
-    return curve
+def _strokes(text: str) -> Strokes:
+    """Read an arc presentation such as "1-3 2-4 3-5 1-4 2-5", whose rows count from 1."""
+    ends = (column.split("-") for column in text.split())
+    return [(int(low) - 1, int(high) - 1) for low, high in ends]
 
 
-def braid(word: Sequence[int]) -> Curve:
-    """Return the closure of the braid `word` of generators +-1, +-2, ...; a positive one is right-handed.
-
-    The strands run round the z axis at radii 2 apart. In a crossing two neighbours make half a turn about the
-    point between them, so they stay 2 apart; crossings that share no strand share a sector where their order
-    allows. There are max |generator| + 1 strands, and a strand without crossings is a circle. Raises
-    ValueError for a generator 0.
-    """
-    if 0 in word:
-        raise ValueError("a braid generator must not be 0: they count from +-1")
-    strands = max(map(abs, word), default=0) + 1
-    target, lift = _sectors(word, strands)
-    sectors = len(target)
-    # A sector 4 long at the innermost strand keeps the half turns from pinching below radius 1.
-    inner = max(2.0, 4 * sectors / (2 * np.pi))
-    samples = max(12, math.ceil(36 / sectors))
-    time = np.arange(samples) / samples
-    half_turn = np.pi * time**2 * (3 - 2 * time)
-
-    def piece(sector: int, position: int) -> NDArray[np.float64]:
-        end = target[sector, position]
-        rho = inner + (position + end) + (position - end) * np.cos(half_turn)
-        angle = 2 * np.pi * (sector + time) / sectors
-        return np.column_stack(
-            [rho * np.cos(angle), rho * np.sin(angle), lift[sector, position] * np.sin(half_turn)]
-        )
-
-    curve = []
-    unseen = set(range(strands))
-    while unseen:
-        first = position = min(unseen)
-        pieces: list[NDArray[np.float64]] = []
-        while not pieces or position != first:
-            unseen.remove(position)
-            for sector in range(sectors):
-                pieces.append(piece(sector, position))
-                position = int(target[sector, position])
-        curve.append(np.vstack(pieces))
-    return curve
-
-
-def _sectors(word: Sequence[int], strands: int) -> tuple[NDArray[np.int_], NDArray[np.float64]]:
-    """Pack the crossings into as few sectors as their order allows.
-
-    Returns two (sectors, strands) arrays: where each position goes in each sector, and +1, -1 or 0 for a
-    strand that passes over, under or straight on.
-    """
-    free = [0] * strands
-    target, lift = [np.arange(strands)], [np.zeros(strands)]
-    for generator in word:
-        left = abs(generator) - 1
-        sector = max(free[left], free[left + 1])
-        free[left] = free[left + 1] = sector + 1
-        if sector == len(target):
-            target.append(np.arange(strands))
-            lift.append(np.zeros(strands))
-        target[sector][[left, left + 1]] = left + 1, left
-        lift[sector][[left, left + 1]] = np.sign(generator), -np.sign(generator)
-    return np.array(target), np.array(lift)
-
-
-def chain(rings: int) -> Curve:
-    """Return a simple chain of round rings: 1 is the unknot, 2 the Hopf link, 3 the sum of two Hopf links.
-
-    The rings have radius 3. Each is the one before it, moved on by 4 and turned by 90 degrees: every gap is
-    then 2, and neighbours have linking number +1. Raises ValueError for less than one ring.
-    """
-    if rings < 1:
-        raise ValueError(f"a chain has at least one ring, not {rings}")
-    time = 2 * np.pi * np.arange(48) / 48
-    along, across = 3 * np.cos(time), 3 * np.sin(time)
-    turns = np.pi / 2 * np.arange(rings)
-    return [
-        np.column_stack([along + 4 * k, across * math.cos(turn), -across * math.sin(turn)])
-        for k, turn in enumerate(turns)
-    ]
-
-
-def mirror(curve: Curve) -> Curve:
-    """Return the mirror image of `curve` in the plane z = 0."""
-    return [component * (1, 1, -1) for component in curve]
-
-
-def scramble(curve: Curve, seed: int, swirls: int = 40) -> Curve:
-    """Return `curve` entangled by random swirls of space, in the same unit and with more vertices.
-
-    A swirl turns every sphere about a centre by an angle that fades with its radius; let the angle grow from
-    zero, and it is an isotopy of all space, so the image has the knot type of the curve. The polygon has the
-    type of the image because its edges are halved until they are shorter than half a rope radius, and a swirl
-    after which the curve would not hold a rope of that radius, 600 radii long at most, is left out. The same
-    seed gives the same curve. Raises ValueError for a curve that touches itself, or too thin a rope.
-    """
-    random = np.random.default_rng(seed)
-    curve, radius = _rope(curve)
-    for _ in range(swirls):
-        swirl = _swirl(random, np.vstack(curve))
-        moved = [_image(component, swirl, radius / 2) for component in curve]
-        if _length(moved) <= 600 * radius and _holds_rope(moved, radius):
-            curve = moved
-    return curve
-
-
-def _rope(curve: Curve) -> tuple[Curve, float]:
-    """Return `curve` finely sampled, and the radius of a rope in it that leaves room to move."""
-    length = _length(curve)
-    for slenderness in (100, 200, 400):
-        radius = length / slenderness
-        fine = [_image(component, np.copy, radius / 2) for component in curve]
-        if _holds_rope(fine, 2 * radius):
-            return fine, radius
-    raise ValueError("the curve touches itself, or comes closer to itself than 1/100 of its length")
-
-
-def _swirl(random: np.random.Generator, points: NDArray[np.float64]) -> Map:
-    """Draw a swirl that takes hold of a part of the (n, 3) points."""
-    size = math.sqrt(points.var(axis=0).sum())
-    centre = points[random.integers(len(points))] + random.normal(scale=0.3 * size, size=3)
-    axis = random.normal(size=3)
-    axis /= np.linalg.norm(axis)
-    most, width = random.uniform(-2 * np.pi, 2 * np.pi), size * random.uniform(0.5, 1.5)
-
-    def swirl(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        arm = points - centre
-        angle = most * np.exp(-(arm**2).sum(axis=1, keepdims=True) / width**2)
-        along = np.outer(arm @ axis, axis)
-        turned = (arm - along) * np.cos(angle) + np.cross(axis, arm) * np.sin(angle)
-        moved: NDArray[np.float64] = centre + along + turned
-        return moved
-
-    return swirl
-
-
-def _image(component: NDArray[np.float64], move: Map, longest: float) -> NDArray[np.float64]:
-    """Return the (m, 3) image of a polygon, with edges halved until those of the image are short enough."""
-    while True:
-        image = move(component)
-        cut = np.flatnonzero(np.linalg.norm(_edges(image), axis=1) > longest)
-        if not len(cut):
-            return image
-        middle = component[cut] + _edges(component)[cut] / 2
-        component = np.insert(component, cut + 1, middle, axis=0)
-
-
-def _holds_rope(curve: Curve, radius: float) -> bool:
-    """Tell whether all vertices are 2 radii apart, or else 2/pi of the way between them along the curve.
-
-    A bend of the radius of the rope meets this up to its half circle, the ends of which are 2 radii apart.
-    """
-    points = np.vstack(curve)
-    points = points - points.mean(axis=0)
-    norm = (points**2).sum(axis=1)
-    distance2 = norm[:, None] + norm - 2 * points @ points.T
-    least = np.full_like(distance2, 2 * radius)
-    begin = 0
-    for component in curve:
-        lengths = np.linalg.norm(_edges(component), axis=1)
-        place = np.cumsum(lengths) - lengths
-        arc = abs(place[:, None] - place)
-        arc = np.minimum(arc, lengths.sum() - arc)
-        own = slice(begin, begin + len(place))
-        least[own, own] = np.minimum(2 / np.pi * arc, 2 * radius)
-        begin += len(place)
-    rounding = 1e-9 * radius**2
-    return bool((distance2 + rounding >= least**2).all())
-
-
-def _edges(component: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.roll(component, -1, axis=0) - component
-
-
-def _length(curve: Curve) -> float:
-    return float(sum(np.linalg.norm(_edges(component), axis=1).sum() for component in curve))
+def _from_knotinfo(name: str) -> dict[str, str]:
+    """Return the row of a knot of 11 to 13 crossings. Raises ValueError if there is none, or no KnotInfo."""
+    try:
+        from database_knotinfo import link_list
+    except ImportError:
+        raise ValueError(
+            f"{name!r} has more than 10 crossings: its table is an extra; pip install 'sono[knotinfo]'"
+        ) from None
+    for found in link_list():
+        if found["name"] == name:
+            # "[1,-2]", or several words "[[1,-2],[1,2]]".
+            word = re.search(r"[-\d, ]+", found["braid_notation"])
+            points = json.loads(found["grid_notation"])
+            columns = [[y for x, y in points if x == column] for column in range(1, len(points) // 2 + 1)]
+            grid_text = " ".join(f"{low}-{high}" for low, high in columns)
+            return {"knot": name, "braid": word[0] if word else "", "grid": grid_text}
+    raise ValueError(f"unknown knot {name!r}: KnotInfo has no such name")

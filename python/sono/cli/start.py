@@ -9,27 +9,43 @@ import click
 @click.argument("name", required=False)
 @click.option("--braid", "word", metavar="WORD", help='Closure of a braid word such as "1 -2 1 -2".')
 @click.option(
+    "--variant",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    help="Another conformation of the same type for each K.",
+    metavar="K",
+)
+@click.option(
     "--scramble", "scramble_seed", type=int, metavar="SEED", help="Entangle the curve, isotopically."
 )
 @click.option("--list", "list_names", is_flag=True, help="List the names that are built in.")
 @click.option("-o", "--output", default="-", show_default=True, metavar="FILE", help="Where to write it.")
 @click.option("--force", is_flag=True, help="Overwrite FILE.")
 def command(
-    name: str | None, word: str | None, scramble_seed: int | None, list_names: bool, output: str, force: bool
+    name: str | None,
+    word: str | None,
+    variant: int,
+    scramble_seed: int | None,
+    list_names: bool,
+    output: str,
+    force: bool,
 ) -> None:
     """Write the starting conformation of a knot or link.
 
-    NAME is a Rolfsen name (3_1), a torus knot or link ("T(2,5)", negative for the mirror image), Hopf, or
-    chain3; --list has them all.
+    NAME is a knot of KnotInfo's table (8_20, or m8_20 for its mirror image; 11a_1 needs the extra
+    sono[knotinfo]), a torus knot or link ("T(2,5)", negative for the mirror image), Hopf, or chain3; --list
+    has those that are built in.
     """
     # Imported here, since numpy would make --help wait.
     from pathlib import Path
 
-    from sono import formats, library
+    from sono import closures, formats, library
     from sono.cli import options
+    from sono.scramble import scramble
 
     if list_names:
-        click.echo("\n".join(library.NAMES))
+        click.echo("\n".join(library.names()))
         return
     if (name is None) == (word is None):
         raise click.UsageError("give either a NAME or a --braid word")
@@ -38,14 +54,16 @@ def command(
     try:
         if word is not None:
             title = f"closed braid {word}"
-            curve = library.braid(_generators(word))
+            curve = closures.braid(_generators(word))
+            curve = scramble(curve, variant) if variant else curve
         else:
             assert name is not None
             title = name
-            curve = library.start(name)
+            curve = library.start(name, variant)
+        title += f", variant {variant}" if variant else ""
         if scramble_seed is not None:
             title += f", scrambled with seed {scramble_seed}"
-            curve = library.scramble(curve, scramble_seed)
+            curve = scramble(curve, scramble_seed)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
     try:

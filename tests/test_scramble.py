@@ -1,0 +1,32 @@
+"""Scrambles: entangled, and of the same type."""
+
+import numpy as np
+import pytest
+
+from sono.closures import chain
+from sono.invariants import crossings, fingerprint
+from sono.library import start
+from sono.scramble import scramble
+
+UNKNOT = fingerprint(chain(1))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_scrambled_circle_stays_unknotted(seed: int) -> None:
+    assert fingerprint(scramble(chain(1), seed, swirls=10)) == UNKNOT
+
+
+def test_scrambled_circle_is_entangled() -> None:
+    assert len(crossings(scramble(chain(1), seed=1, swirls=20)).sign) > 5
+
+
+def test_scramble_follows_the_seed() -> None:
+    one, same, other = (scramble(start("3_1"), seed, swirls=5)[0] for seed in (1, 1, 2))
+    np.testing.assert_array_equal(one, same)
+    assert one.shape != other.shape or not np.allclose(one, other)
+
+
+def test_scramble_refuses_a_curve_that_touches_itself() -> None:
+    eight = np.array([[0.0, 0, 0], [1, 1, 0], [1, -1, 0], [0, 0, 0], [-1, 1, 0], [-1, -1, 0]])
+    with pytest.raises(ValueError, match="touches itself"):
+        scramble([eight], seed=0)
