@@ -316,7 +316,7 @@ def test_a_signal_keeps_the_best_state(
     first, second = stderr.splitlines()
     best = f"n = {n}, is in 3_1.n50000.best.txt; --resume goes on from here"
     assert first == f"sono: 3_1: interrupted; the best state so far, {best}"
-    assert second == "sono: 1 of 2 files were not begun"
+    assert second == "sono: 1 of 2 knots were not begun"
     assert len(formats.read("3_1.n50000.best.txt").components[0]) == int(n)
     assert names(folder) == ["3_1.n50000.best.txt", "3_1.n60.txt", "saved"]
     assert names(folder / "saved") == ["3_1.checkpoint.json"]

@@ -5,21 +5,23 @@ import json
 import math
 import os
 import re
+import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
-from sono import contacts, formats
+from sono import contacts, formats, sources
 from sono._core import CurveError, Measures
 from sono.formats import FormatError, VertexFile
 from sono.pipeline import TRIALS, Method, Progress, Run, Stopped, Tight, default_settings, forces, measure
 from sono.tables import Row
+from sono.workers import Workers
 
 SAVE_EVERY = 10.0
 """Seconds between two checkpoints."""
@@ -59,8 +61,54 @@ class Job:
     def files(self) -> list[str]:
         """Return the files that the job writes."""
         paths = [*self.outputs.values(), *self.forces.values()]
-        outputs = [path for path in paths if not _is_stream(path)]
+        outputs = [path for path in paths if not is_stream(path)]
         return [*outputs, os.fspath(self.checkpoint)] if self.checkpoint else outputs
+
+    def results(self, show: Callable[[float, str], None]) -> "Iterator[Result]":
+        """Do the job, giving each row when its vertices are on the disk.
+
+        `show` is told how far the run is, from 0 to 1, and what it does; it may raise `Stopped`.
+        """
+        return run(self, partial(_told, show))
+
+    def sent_to(self, workers: Workers) -> "SentJob":
+        """Return the same job, to be done elsewhere."""
+        return SentJob(self, workers)
+
+
+@dataclass(frozen=True)
+class SentJob:
+    """A job whose computing is done by `workers`, perhaps on other machines; its files stay here."""
+
+    job: Job
+    workers: Workers
+
+    @property
+    def name(self) -> str:
+        """The knot's name in tables."""
+        return self.job.name
+
+    def results(self, show: Callable[[float, str], None]) -> "Iterator[Result]":
+        """Do the job, giving its rows when all of it has come back. `show` may raise `Stopped`."""
+        job = self.job
+        kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
+        for n in kept:
+            yield _kept(job, n)
+        outputs = {n: output for n, output in job.outputs.items() if n not in kept}
+        if not outputs:
+            return
+        try:
+            content = formats.load(job.source) if not sources.is_name(job.source) else None
+            sent = replace(job, outputs=outputs, resume=False)
+            waiting = self.workers.submit(_away, sent, content, watch=lambda: show(0, "on the cluster"))
+            results, texts = waiting()
+            for path, text in texts.items():
+                formats.save(path, text)
+            yield from results
+        except FormatError as error:
+            yield Result(None, str(error))
+        except Stopped as why:
+            yield Result(None, f"{job.name}: {why}; what the cluster had done of it is lost")
 
 
 @dataclass(frozen=True)
@@ -93,7 +141,7 @@ def as_row(name: str, file: str | None, measures: Measures, **more: Any) -> Row:
 def run(job: Job, watch: Callable[[Progress], None]) -> Iterator[Result]:
     """Do a job, giving each row when its vertices are on the disk; `watch` may raise `Stopped`."""
     try:
-        file = formats.read(job.source)
+        file = sources.read(job.source)
         kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
         for n in kept:
             yield _kept(job, n)
@@ -101,6 +149,50 @@ def run(job: Job, watch: Callable[[Progress], None]) -> Iterator[Result]:
             yield from _Task(job, file, todo).results(watch)
     except FormatError as error:
         yield Result(None, str(error))
+
+
+def _away(job: Job, content: tuple[str, str] | None) -> "tuple[list[Result], dict[str, str]]":
+    """Do a job far from its files: give its results, and what is to be written to them."""
+    with tempfile.TemporaryDirectory() as folder:
+        here: dict[str, str] = {}
+
+        def moved(path: str) -> str:
+            suffix = "" if path == "-" else Path(path).suffix
+            temporary = os.path.join(folder, f"{len(here)}{suffix}")
+            here[temporary] = path
+            here[free_name(temporary)] = free_name(path)
+            return temporary
+
+        source = moved(content[0]) if content else job.source
+        if content:
+            formats.save(source, content[1])
+        outputs = {n: moved(path) for n, path in job.outputs.items()}
+        between = {n: moved(path) for n, path in job.forces.items()}
+        done = [
+            _named(result, here)
+            for result in run(replace(job, source=source, outputs=outputs, forces=between), lambda _: None)
+        ]
+        written = [path for path in here if path != source and os.path.exists(path)]
+        return done, {here[path]: formats.load(path)[1] for path in written}
+
+
+def _named(result: "Result", names: dict[str, str]) -> "Result":
+    """Put the files' own names into a result."""
+
+    def named(text: Any) -> Any:
+        for path, name in names.items():
+            text = text.replace(path, name) if isinstance(text, str) else text
+        return text
+
+    row = result.row and {key: named(value) for key, value in result.row.items()}
+    return Result(row, named(result.trouble), named(result.note))
+
+
+def _told(show: Callable[[float, str], None], progress: Progress) -> None:
+    status = progress.status
+    trial = f"trial {progress.trial} " if progress.stage in ("collapse", "anneal", "trial") else ""
+    what = f"{trial}{progress.stage} n {progress.n}/{progress.target} L_p {status.best.l_p:.5f}"
+    show(status.progress, what)
 
 
 def _kept(job: Job, n: int) -> Result:
@@ -119,12 +211,13 @@ def _kept(job: Job, n: int) -> Result:
     if fitted is None:
         return _judged(job, _rope_row(job, output, measures, SETTLED if good else STUCK))
     # Only the run itself could tell that mu was reached; that it says so is checked as far as may be.
-    good = good and _says_tight(output) and fitted.residual <= KEPT_RESIDUAL
+    good = good and says_tight(output) and fitted.residual <= KEPT_RESIDUAL
     row = _rope_row(job, output, measures, TIGHT if good else STUCK, residual=fitted.residual)
     return _judged(job, row)
 
 
-def _says_tight(output: str) -> bool:
+def says_tight(output: str) -> bool:
+    """Tell whether the header of a written file says that the polish reached its end."""
     header = re.compile(rf"^# .*: {TIGHT}, rope radius R_s = 1$", re.MULTILINE)
     return header.search(formats.load(output)[1]) is not None
 
@@ -187,7 +280,7 @@ class _Task:
     def stopped(self, why: str) -> Result:
         """Write the best state of the run."""
         best = self.run.best()
-        output = _free_name(self.job.outputs[self.run.targets[0]])
+        output = free_name(self.job.outputs[self.run.targets[0]])
         row, unwritten = self.deliver_to(output, best, STOPPED)
         place = unwritten or f"the best state so far, n = {best.measures.n}, is in {output}"
         return Result(row, f"{self.job.name}: {why}; {place}{self.way_on()}")
@@ -218,7 +311,7 @@ class _Task:
         measures, unwritten = tight.measures, None
         try:
             formats.write(output, tight.curve, _header(self.job, tight, status))
-            if not _is_stream(output):
+            if not is_stream(output):
                 measures = measured(output)[1]
         except FormatError as error:
             unwritten = str(error)
@@ -305,27 +398,33 @@ def _tolerance(job: Job) -> float:
 
 
 def _header(job: Job, tight: Tight, status: str) -> list[str]:
-    name = job.name.encode(errors="replace").decode()  # a file's name need not be text
-    m = tight.measures
     physics = (f"{key} {value:.1e}" for key in PHYSICS if (value := getattr(tight, key)) is not None)
-    l_c, l_a = (f"{value:.8f}" if value is not None else "-" for value in (m.l_c, m.l_a))
     return [
-        f"{name}: {status}, rope radius R_s = 1",
-        f"n {m.n}  dl {m.dl:.8f}  L_p {m.l_p:.8f}  L_c {l_c}  L_a {l_a}  (length over radius)",
+        *title(job.name, status, tight.measures),
         f"method {job.method}  trials {max(len(tight.shapes), 1)}  settings {json.dumps(job.settings)}",
         "  ".join(physics) or "not polished",
     ]
 
 
-def _is_stream(output: str) -> bool:
+def title(name: str, status: str, m: Measures) -> list[str]:
+    """Return the comments that a file of a rope begins with."""
+    name = name.encode(errors="replace").decode()  # a file's name need not be text
+    l_c, l_a = (f"{value:.8f}" if value is not None else "-" for value in (m.l_c, m.l_a))
+    return [
+        f"{name}: {status}, rope radius R_s = 1",
+        f"n {m.n}  dl {m.dl:.8f}  L_p {m.l_p:.8f}  L_c {l_c}  L_a {l_a}  (length over radius)",
+    ]
+
+
+def is_stream(output: str) -> bool:
     """Tell what can be written to but not read again: standard output, a device, a pipe."""
     path = Path(output)
     return output == "-" or (path.exists() and not path.is_file() and not path.is_dir())
 
 
-def _free_name(output: str) -> str:
+def free_name(output: str) -> str:
     """A name beside `output` for an unfinished result: NAME.best.txt, NAME.best2.txt, ..."""
-    if _is_stream(output):
+    if is_stream(output):
         return output
     path = Path(output)
     names = (path.with_suffix(f".best{number}{path.suffix}") for number in chain([""], count(2)))

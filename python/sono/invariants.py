@@ -1,7 +1,8 @@
-"""Knot invariants of polygons: the oracles that say whether two curves have the same knot type.
+"""Knot invariants of polygons: what tells whether two curves have the same knot type.
 
-A curve is one (n_i, 3) array a component. `fingerprint` is all that most tests need; the single invariants
-take a projection: `alexander(diagram(curve), -1)`.
+A curve is one (n_i, 3) array a component. `fingerprint` is what a search checks each trial with; `homfly` is
+sharper and needs the extra sono[identify]. The single invariants take a projection:
+`alexander(diagram(curve), -1)`.
 """
 
 import cmath
@@ -53,6 +54,30 @@ def fingerprint(curve: Curve) -> Fingerprint:
     linking = linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()
     delta = [round(alexander(found, t), 4) for t in roots]
     return tuple(linking), tuple(signature(found, t) for t in roots), tuple(delta)
+
+
+def homfly(curve: Curve) -> str:
+    """Return the HOMFLY polynomial in Regina's variables alpha and z. Raises ImportError without regina."""
+    import regina
+
+    polynomial = regina.Link.fromPD(planar_diagram(diagram(curve))).homflyAZ()
+    return str(polynomial)
+
+
+def planar_diagram(found: Crossings) -> list[tuple[int, int, int, int]]:
+    """Return the PD code: for each crossing its four edges, counter-clockwise from the incoming lower one.
+
+    Edges are numbered from 1 along the components, in order. A component without crossings leaves no trace.
+    """
+    place = np.concatenate([found.under, found.over])
+    order = np.argsort(place)
+    leaving = np.argsort(order)
+    entering = _entered(found, place[order])[leaving]
+    (under_in, over_in), (under_out, over_out) = np.split(entering + 1, 2), np.split(leaving + 1, 2)
+    right = found.sign > 0
+    second, fourth = np.where(right, over_out, over_in), np.where(right, over_in, over_out)
+    codes = np.stack([under_in, second, under_out, fourth], axis=1).tolist()
+    return [(a, b, c, d) for a, b, c, d in codes]
 
 
 def diagram(curve: Curve) -> Crossings:
@@ -122,11 +147,7 @@ def _faces(found: Crossings) -> Ints:
     place = np.concatenate([found.under, found.over])
     order = np.argsort(place)
     rank = np.argsort(order)
-    # An edge has the rank of the crossing it leaves, and enters the next one of its component.
-    component = found.component(place[order])
-    entering = np.arange(len(place)) - 1
-    first, last = (np.searchsorted(component, component, side) for side in ("left", "right"))
-    entering = np.where(entering < first, last - 1, entering)
+    entering = _entered(found, place[order])
     under_out, over_out = np.split(rank, 2)
     under_in, over_in = entering[under_out], entering[over_out]
     # An edge has two sides. A corner joins the sides of two; what is joined all the way round is a face.
@@ -140,6 +161,14 @@ def _faces(found: Crossings) -> Ints:
         np.minimum.at(face, one, low)
         np.minimum.at(face, two, low)
     return np.unique(face[one], return_inverse=True)[1].reshape(one.shape)
+
+
+def _entered(found: Crossings, places: Floats) -> Ints:
+    """Return, for each of the sorted places, the edge that enters it: an edge has the rank it leaves."""
+    component = found.component(places)
+    first, last = (np.searchsorted(component, component, side) for side in ("left", "right"))
+    entering = np.arange(len(places)) - 1
+    return np.where(entering < first, last - 1, entering)
 
 
 def crossings(curve: Curve, direction: Floats = VIEW) -> Crossings:

@@ -14,6 +14,9 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Self, TextIO
 
+from sono.formats.files import load
+from sono.formats.vertices import FormatError
+
 Value = str | int | float | None
 Row = Mapping[str, Value]
 
@@ -32,6 +35,11 @@ class Column:
     latex: str
     spec: str
     width: int
+
+    @property
+    def kind(self) -> type[str] | type[int] | type[float]:
+        """The type of its values."""
+        return int if self.spec == "d" else float if self.spec else str
 
 
 COLUMNS = {
@@ -56,8 +64,18 @@ COLUMNS = {
         Column("mu", "mu", "$\\mu$", ".1e", 8),
         Column("excess", "excess", "excess", ".1e", 8),
         Column("trials", "trials", "trials", "d", 6),
+        Column("hits", "hits", "hits", "d", 5),
+        Column("variant", "variant", "variant", "d", 8),
         Column("sweeps", "sweeps", "sweeps", "d", 9),
         Column("factorisations", "factorisations", "factorisations", "d", 14),
+        Column("published", "published", "published", ".4f", 10),
+        Column("source", "source", "source", "", 18),
+        Column("l_a_difference", "L_a-published", "$L_a-$published", "+.4f", 13),
+        Column("l_c_difference", "L_c-published", "$L_c-$published", "+.4f", 13),
+        Column("n_fine", "n(fine)", "$n$ (fine)", "d", 7),
+        Column("l_c_fine", "L_c(fine)", "$L_c$ (fine)", ".6f", 11),
+        Column("seed", "seed", "seed", "d", 6),
+        Column("type", "type", "type", "", 9),
         Column("seconds", "seconds", "seconds", ".2f", 9),
         Column("status", "status", "status", "", 12),
         Column("file", "file", "file", "", 12),
@@ -214,6 +232,42 @@ def writer(format: str, columns: Sequence[str], stream: TextIO) -> TableWriter:
         if key not in COLUMNS:
             raise ValueError(f"unknown column {key!r}; the columns are: {', '.join(COLUMNS)}")
     return FORMATS[format]([COLUMNS[key] for key in columns], stream)
+
+
+def read(source: str) -> list[Row]:
+    """Read a table in TSV, CSV or JSON lines, "-" for standard input; columns that are not ours are left out.
+
+    Raises `FormatError` naming file and line.
+    """
+    name, text = load(source)
+    first, *_ = text.splitlines() or [""]
+    if first.startswith("{"):
+        return [_of_json(name, number, line) for number, line in enumerate(text.splitlines(), 1) if line]
+    lines = csv.reader(io.StringIO(text), delimiter="\t" if "\t" in first else ",")
+    keys = {column.header: key for key, column in COLUMNS.items()}
+    header = [keys.get(cell, cell) for cell in next(lines, [])]
+    if "knot" not in header:
+        raise FormatError.at(name, 1, "has no column knot; give a table that sono wrote as tsv, csv or json")
+    return [_of_cells(name, lines.line_num, header, cells) for cells in lines]
+
+
+def _of_json(name: str, number: int, line: str) -> Row:
+    try:
+        row = json.loads(line)
+    except ValueError as error:
+        raise FormatError.at(name, number, f"is no JSON: {error}") from error
+    return {key: value for key, value in row.items() if key in COLUMNS}
+
+
+def _of_cells(name: str, number: int, header: Sequence[str], cells: Sequence[str]) -> Row:
+    try:
+        return {
+            key: None if cell == "-" else COLUMNS[key].kind(cell)
+            for key, cell in zip(header, cells, strict=True)
+            if key in COLUMNS
+        }
+    except ValueError as error:
+        raise FormatError.at(name, number, f"does not fit the header: {error}") from error
 
 
 def _rounded(row: Row, column: Column) -> str:

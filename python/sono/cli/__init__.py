@@ -9,7 +9,10 @@ from typing import Any
 import click
 
 COMMANDS = {
+    "atlas": "Check or improve the table of the shortest known ropes.",
+    "compare": "Compare ropelengths with the published ones.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
+    "search": "Find the shortest tight rope of a knot.",
     "start": "Write the starting conformation of a knot.",
     "tighten": "Tighten curves and write the paper's table.",
 }

@@ -1,14 +1,22 @@
 """What the commands share: options, the table on standard output, messages on standard error."""
 
+import functools
+import io
+import os
+import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
 
 from sono import tables
 from sono.tables import TableWriter
+
+if TYPE_CHECKING:
+    from sono.workers import Cluster, Threads
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -16,6 +24,76 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def files(function: Function) -> Function:
     """The input files, `-` for standard input."""
     return click.argument("sources", metavar="FILE...", nargs=-1, required=True)(function)
+
+
+def knots(function: Function) -> Function:
+    """Files or names of knots, as arguments and from `--list`, of which `--shard` takes a part."""
+
+    @click.argument("arguments", metavar="[FILE|NAME]...", nargs=-1)
+    @click.option(
+        "--list",
+        "list_file",
+        metavar="FILE",
+        type=click.Path(allow_dash=True, dir_okay=False, exists=True),
+        help="More files or names, one a line; # begins a comment.",
+    )
+    @click.option(
+        "--shard",
+        metavar="I/N",
+        callback=_shard,
+        help="Take only every N-th of them, beginning with the I-th: for arrays of jobs.",
+    )
+    @functools.wraps(function)
+    def command(
+        arguments: tuple[str, ...], list_file: str | None, shard: slice | None, **more: object
+    ) -> object:
+        sources = [*arguments, *(_listed(list_file) if list_file else [])]
+        if not sources:
+            raise click.UsageError("give a FILE or the NAME of a knot, or a --list of them")
+        return function(sources=sources[shard] if shard else sources, **more)
+
+    return cast("Function", command)
+
+
+def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> slice | None:
+    match = re.fullmatch(r"(\d+)/(\d+)", value or "1/1")
+    if not match or not 1 <= int(match[1]) <= int(match[2]):
+        raise click.BadParameter(f"{value!r}: give I/N with I from 1 to N, such as 3/20")
+    return slice(int(match[1]) - 1, None, int(match[2]))
+
+
+def _listed(path: str) -> list[str]:
+    with click.open_file(path, encoding="utf-8") as lines:
+        words = (line.split("#")[0].strip() for line in lines)
+        return [word for word in words if word]
+
+
+def parallel(jobs_help: str) -> Callable[[Function], Function]:
+    """`--jobs` and `--cluster`."""
+
+    def decorate(function: Function) -> Function:
+        function = click.option(
+            "--cluster",
+            metavar="ADDRESS",
+            help="Have a Dask scheduler's workers do it, tcp://host:8786 say; needs the extra sono[cluster].",
+        )(function)
+        return click.option(
+            "-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help=jobs_help
+        )(function)
+
+    return decorate
+
+
+def workers(jobs: int, cluster: str | None) -> "Threads | Cluster":
+    """Threads, or the cluster at this address."""
+    from sono.workers import Cluster, Threads
+
+    if not cluster:
+        return Threads(jobs)
+    try:
+        return Cluster(cluster)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
 
 
 def table(default: Sequence[str]) -> Callable[[Function], Function]:
@@ -71,3 +149,43 @@ def knot_name(source: str) -> str:
 def complain(message: str) -> None:
     """An error or a warning, on standard error."""
     click.echo(f"sono: {message}", err=True)
+
+
+def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool) -> None:
+    """Before hours are spent: see that these files can be written, and read standard input.
+
+    If `fresh`, a file that is there is an error.
+    """
+    _refuse_to_overwrite(paths, fresh)
+    for folder in {os.path.dirname(path) for path in paths}:
+        _make_folder(folder or ".")
+    if "-" in sources:
+        # Here, since a signal does not reach a thread that waits for input.
+        sys.stdin = io.TextIOWrapper(io.BytesIO(sys.stdin.buffer.read()))
+
+
+def _refuse_to_overwrite(paths: Sequence[str], fresh: bool) -> None:
+    for path, times in Counter(paths).items():
+        if times > 1:
+            raise click.UsageError(f"{times} of the files would write {path}; rename one of them")
+        if fresh and os.path.exists(path):
+            raise click.UsageError(
+                f"{path} exists; --force starts anew, --resume goes on from it, -o names another place"
+            )
+
+
+def _make_folder(folder: str) -> None:
+    """Make a folder, or make sure that it can be written to, before hours are spent."""
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        raise click.UsageError(f"{folder}: cannot be made: {error.strerror}") from error
+    if not os.access(folder, os.W_OK):
+        raise click.UsageError(f"{folder}: cannot be written to; -o names another folder")
+
+
+def table_beside(format_: str | None, columns: list[str], taken: bool, quiet: bool) -> TableWriter:
+    """The table, which leaves standard output to vertices or contacts if they go there."""
+    if not taken:
+        return writer(format_, columns)
+    return writer(format_, columns, io.StringIO() if quiet else sys.stderr)

@@ -1,0 +1,128 @@
+"""`sono atlas`: the shortest known tight rope of every knot, checked or improved."""
+
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from sono.cli import options
+from sono.cli.runner import Batch, Show
+
+if TYPE_CHECKING:
+    from sono.atlas import Atlas
+    from sono.batch import Result
+    from sono.searches import SearchJob
+
+COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference", "l_c_difference", "type")
+
+
+@click.command("atlas")
+@click.argument("sources", metavar="[NAME|FILE]...", nargs=-1)
+@click.option(
+    "--folder",
+    type=click.Path(file_okay=False),
+    default="knots",
+    show_default=True,
+    help="Where atlas.tsv and tight/ are.",
+)
+@click.option("--update", is_flag=True, help="Search for shorter ropes, and take them in.")
+@click.option(
+    "--trials", type=click.IntRange(1), default=64, show_default=True, help="Starts to try for each knot."
+)
+@click.option("--seed", type=click.IntRange(0, 10**6), default=0, help="Other starts.  [default: 0]")
+@options.parallel("Trials made at the same time.")
+@click.option(
+    "--checkpoint",
+    metavar="FOLDER",
+    type=click.Path(file_okay=False),
+    default="atlas-search",
+    show_default=True,
+    help="Keep the searches here; the next update goes on from them.",
+)
+@options.table(COLUMNS)
+@options.quiet
+def command(
+    sources: tuple[str, ...],
+    folder: str,
+    update: bool,
+    trials: int,
+    seed: int,
+    jobs: int,
+    cluster: str | None,
+    checkpoint: str,
+    format_: str | None,
+    columns: list[str],
+    quiet: bool,
+) -> None:
+    """Check the atlas, or with --update improve it; a row never gets worse.
+
+    For each NAME, by default all prime knots up to 10 crossings, the rope in the atlas is measured and its
+    type confirmed by invariants. With --update its search goes on to so many --trials, and what is shorter is
+    taken in; so is a rope from a FILE called NAME.txt or NAME.more.txt.
+    """
+    # Imported here, since numpy would make --help wait.
+    from sono import library
+    from sono.atlas import Atlas
+    from sono.searches import SearchJob
+
+    atlas = Atlas(Path(folder))
+    names = sources or [row["knot"] for row in library.table("knots")]
+    with options.workers(jobs, cluster) as workers:
+        work = [
+            _AtlasJob(
+                atlas,
+                options.knot_name(source).split(".")[0],
+                SearchJob(
+                    source,
+                    source,
+                    str(Path(checkpoint, f"{source}.s{seed}.tight.txt")),
+                    workers,
+                    trials,
+                    seed=seed,
+                    checkpoint=Path(checkpoint, f"{source}.s{seed}.json"),
+                    resume=True,
+                )
+                if update and not Path(source).exists()
+                else None,
+                source if Path(source).exists() else None,
+            )
+            for source in names
+        ]
+        if any(job.file for job in work) and not update:
+            raise click.UsageError("give --update to take ropes from files into the atlas")
+        options.prepare([path for job in work if job.search for path in job.search.files()], [], False)
+        sys.exit(Batch(options.writer(format_, columns), quiet).run(work, workers.count))
+
+
+@dataclass(frozen=True)
+class _AtlasJob:
+    """One knot of the atlas: to be searched for, taken from a file, or checked."""
+
+    atlas: "Atlas"
+    name: str
+    search: "SearchJob | None"
+    file: str | None
+
+    def results(self, show: Show) -> "Iterator[Result]":
+        """Do it."""
+        from sono.batch import Result
+        from sono.formats import FormatError
+
+        try:
+            file = self.file
+            if self.search:
+                for result in self.search.results(show):
+                    if result.trouble:
+                        yield Result(None, result.trouble)
+                        return
+                file = self.search.output
+            row = self.atlas.take(self.name, file) if file else self.atlas.checked(self.name)
+        except FormatError as error:
+            yield Result(None, str(error))
+        except ValueError as error:
+            yield Result(None, str(error))
+        else:
+            yield Result(row)

@@ -1,0 +1,148 @@
+"""What `sono tighten` and `sono search` share: jobs done side by side, their rows, Ctrl-C."""
+
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Protocol
+
+from sono.cli import options
+from sono.tables import TableWriter
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
+    from rich.progress import TaskID
+
+    from sono.batch import Result
+
+Show = Callable[[float, str], None]
+"""Takes how far a job is, from 0 to 1, and what it does; it may raise `Stopped`."""
+
+
+class Job(Protocol):
+    """One knot's work."""
+
+    @property
+    def name(self) -> str:
+        """The knot's name in tables."""
+
+    def results(self, show: Show) -> "Iterator[Result]":
+        """Do it."""
+
+
+class Batch:
+    """Does jobs in threads (Rust releases the interpreter), writes their rows, stops them upon a signal."""
+
+    def __init__(self, table: TableWriter, quiet: bool) -> None:
+        """Show rows in a table, and unless `quiet` progress and notes on standard error."""
+        self.table = table
+        self.quiet = quiet
+        self.bar = _bar(quiet)
+        self.lock = threading.Lock()
+        self.failed = False
+        self.stop = ""
+        self.signal = 0
+        self.not_begun = 0
+
+    def run(self, work: "Sequence[Job]", jobs: int) -> int:
+        """Do so many jobs at a time; return the exit code."""
+        with self.signals_caught(), self.table, self.bar, ThreadPoolExecutor(jobs) as pool:
+            _wait([pool.submit(self.do, job) for job in work])
+        if self.not_begun:
+            options.complain(f"{self.not_begun} of {len(work)} knots were not begun")
+        return 128 + self.signal if self.signal else int(self.failed)
+
+    def do(self, job: "Job") -> None:
+        """Do one job; whatever is wrong with it stays with it."""
+        with self.lock:
+            if self.stop:
+                self.not_begun += 1
+                return
+            task = self.bar.add_task(job.name, total=1, what="")
+        try:
+            for result in job.results(lambda done, what: self.watch(task, done, what)):
+                with self.lock, self.bar_hidden():
+                    self.show(result)
+        except BaseException:
+            self.stop = "the table cannot be written"
+            raise
+        finally:
+            with self.lock:
+                self.bar.remove_task(task)
+
+    def show(self, result: "Result") -> None:
+        """Write a row, and tell what is wrong with it."""
+        try:
+            if result.row:
+                self.table.row(result.row)
+        finally:
+            if result.note and not self.quiet:
+                options.complain(result.note)
+            if result.trouble:
+                self.failed = True
+                options.complain(result.trouble)
+
+    @contextmanager
+    def bar_hidden(self) -> Iterator[None]:
+        """Clear the line of the terminal that the bar is on."""
+        tasks = self.bar.task_ids
+        for task in tasks:
+            self.bar.update(task, visible=False)
+        self.bar.refresh()
+        yield
+        for task in tasks:
+            self.bar.update(task, visible=True)
+
+    def watch(self, task: "TaskID", done: float, what: str) -> None:
+        """Show how far a job is, from 0 to 1, and stop it when it is time to."""
+        from sono.pipeline import Stopped
+
+        self.bar.update(task, completed=done, what=what)
+        if self.stop:
+            raise Stopped(self.stop)
+
+    @contextmanager
+    def signals_caught(self) -> Iterator[None]:
+        """Let Ctrl-C and SIGTERM, which batch systems send, stop the jobs, each at its next slice."""
+
+        def stop(number: int, frame: Any) -> None:
+            self.stop, self.signal = "interrupted", number
+
+        before = {
+            number: signal.signal(number, stop)
+            for number in (signal.SIGINT, signal.SIGTERM)
+            if signal.getsignal(number) != signal.SIG_IGN  # as a script has it for its background jobs
+        }
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+
+def _wait(futures: "list[Future[None]]") -> None:
+    """Wait in short steps, so that a signal is seen at once; raise what a thread did not expect."""
+    pending = set(futures)
+    while pending:
+        done, pending = wait(pending, timeout=0.2, return_when=FIRST_COMPLETED)
+        for future in done:
+            future.result()
+
+
+def _bar(quiet: bool) -> "Bar":
+    """A progress bar on standard error, if that is a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    return Progress(
+        TextColumn("{task.description}", markup=False),
+        BarColumn(20),
+        TextColumn("{task.fields[what]}"),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+        disable=quiet or not (sys.stderr.isatty() and console.is_interactive),
+    )

@@ -1,0 +1,121 @@
+"""`sono search NAME|FILE...`: the shortest tight rope of a knot, from many starts."""
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from sono import tables
+from sono.cli import options
+from sono.cli.runner import Batch
+
+COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
+
+
+@click.command("search")
+@options.knots
+@click.option(
+    "--trials", type=click.IntRange(1), help="Starts to try.  [default: 64, or until the time limit]"
+)
+@click.option(
+    "--time-limit",
+    type=click.FloatRange(0, min_open=True),
+    metavar="SECONDS",
+    help="Begin no trial of a knot after this time.",
+)
+@click.option(
+    "--dl",
+    type=click.FloatRange(0.005, 0.5),
+    default=0.2,
+    show_default=True,
+    help="Edge length of the ropes at the end, in radii.",
+)
+@click.option(
+    "--minima",
+    type=click.IntRange(1),
+    default=5,
+    show_default=True,
+    metavar="M",
+    help="Rows for each knot: its M shortest minima.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="PATH",
+    help="File or folder/ for the vertices of the shortest.  [default: NAME.tight.txt in this folder]",
+)
+@click.option("--force", is_flag=True, help="Overwrite files that are there.")
+@click.option("--seed", type=click.IntRange(0, 10**6), default=0, help="Other starts.  [default: 0]")
+@options.parallel("Trials made at the same time.")
+@click.option(
+    "--checkpoint",
+    metavar="FOLDER",
+    type=click.Path(file_okay=False),
+    help="Keep the state of each search here.",
+)
+@click.option("--resume", is_flag=True, help="Go on from checkpoints; keep outputs that are finished.")
+@options.table(COLUMNS)
+@options.quiet
+def command(
+    sources: list[str],
+    trials: int | None,
+    time_limit: float | None,
+    dl: float,
+    minima: int,
+    output: str | None,
+    force: bool,
+    seed: int,
+    jobs: int,
+    cluster: str | None,
+    checkpoint: str | None,
+    resume: bool,
+    format_: str | None,
+    columns: list[str],
+    quiet: bool,
+) -> None:
+    """Search for the shortest tight rope of each knot, a NAME such as 8_20 or a FILE.
+
+    Each trial tightens another starting conformation on few beads; the most promising shapes are refined and
+    polished. The rows are the shortest minima found: hits tells in how many trials. The best rope so far is
+    always in NAME.tight.txt.
+    """
+    # Imported here, since numpy would make --help wait.
+    from sono.searches import SearchJob
+
+    if force and resume:
+        raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")
+    trials = trials or (None if time_limit else 64)
+    with options.workers(jobs, cluster) as workers:
+        work = [
+            SearchJob(
+                source,
+                name,
+                path,
+                workers,
+                trials,
+                time_limit,
+                seed,
+                dl,
+                minima,
+                Path(checkpoint, f"{name}.search.json") if checkpoint else None,
+                resume,
+            )
+            for source, name, path in _plan(sources, output)
+        ]
+        options.prepare([path for job in work for path in job.files()], sources, not (force or resume))
+        table = options.table_beside(format_, columns, output == "-", quiet)
+        sys.exit(Batch(table, quiet).run(work, workers.count))
+
+
+def _plan(sources: list[str], output: str | None) -> Iterator[tuple[str, str, str]]:
+    """Give the name of each source, and where its vertices go."""
+    for source in sources:
+        name = options.knot_name(source)
+        if output == "-" or (output and not output.endswith(("/", os.sep)) and not os.path.isdir(output)):
+            if len(sources) > 1:
+                raise click.UsageError("-o names one file for several knots; name a folder (FOLDER/)")
+            yield source, name, output
+        else:
+            yield source, name, os.path.join(output or "", f"{name}.tight.txt")

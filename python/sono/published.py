@@ -1,0 +1,42 @@
+"""Ropelengths from the literature, beside ours."""
+
+from functools import cache
+
+from sono import library, tables
+from sono.tables import Row
+
+
+@cache
+def table() -> dict[str, Row]:
+    """Return the shortest published ropelengths of prime knots: rows with knot, published and source."""
+    return {
+        row["knot"]: {"knot": row["knot"], "published": float(row["ropelength"]), "source": row["source"]}
+        for row in library.table("published")
+    }
+
+
+def from_file(path: str) -> dict[str, Row]:
+    """Return the rows of another table: its column published, or else its L_a. Raises `FormatError`."""
+    return {
+        str(row["knot"]): {
+            "published": row.get("published") or row.get("l_a"),
+            "source": row.get("source") or path,
+        }
+        for row in tables.read(path)
+    }
+
+
+def beside(row: Row, published: dict[str, Row]) -> Row:
+    """Add to a row what is published on its knot, or on its mirror image, and the differences.
+
+    The difference of L_c is that of the finer level, where the row has one.
+    """
+    other = published.get(str(row["knot"]).removeprefix("m"), {})
+    bound = other.get("published")
+    if not isinstance(bound, float):
+        return row
+    ours = {"l_a": row.get("l_a"), "l_c": row.get("l_c_fine") or row.get("l_c")}
+    differences = {
+        f"{key}_difference": value - bound for key, value in ours.items() if isinstance(value, float)
+    }
+    return {**row, "published": bound, "source": other.get("source"), **differences}

@@ -1,0 +1,319 @@
+"""The search for the shortest tight rope of a knot: many trials from different starts.
+
+The tight shape that a rope ends in depends on how it begins, and the shortest one is found by few starts in a
+hundred. A trial collapses a start, anneals it with SONO on few beads and polishes it there, in about half a
+second; what decides is the variety of the starts, so each trial takes another variant of `library.start`. At
+so few beads the grooves between them blur lengths by a few tenths of a percent, so the most promising shapes
+are refined to finer edges, where minima are told apart by length and radii of gyration.
+
+Trials are pure functions of a source and the number of its variant, so they may run in threads or on other
+machines, and a search gives the same minima whatever the number of workers.
+"""
+
+import json
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol, Self, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sono import library
+from sono._core import CurveError, Measures, Polish, Tightener
+from sono.invariants import Fingerprint, fingerprint
+from sono.pipeline import HOT, SLICE, Curve, Run, as_curve
+from sono.scramble import scramble
+
+TRIAL_EDGE = 0.45
+"""Edge length of the shapes that trials end in, in radii."""
+
+FINE_EDGE = 0.2
+"""Edge length at which minima are compared."""
+
+ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
+ANNEAL_EDGES = (0.8, 1.2)
+"""The anneal of a trial, with edges of other lengths each time: the coarser, the higher the barriers that it
+crosses. A shorter anneal meets the rarer minima less often in the same time, and so does a longer one."""
+
+OFFSETS = 2
+"""Offsets along the rope from which a shape is refined; the shorter result counts."""
+
+ROUND = 8
+REFINED = 2
+"""After each round of so many trials so many of its shapes are refined."""
+
+FINALISTS = 4
+"""Shapes that are refined after the last round."""
+
+KEPT = 24
+"""Unrefined shapes that are remembered."""
+
+SAME_RADII = 0.007
+"""Relative difference of the radii of gyration up to which ropes of one edge length count as one shape."""
+
+SAME_LENGTH = 2e-4
+"""Relative difference in L_a up to which two refined ropes of the same shape count as one minimum."""
+
+SEED_STRIDE = 10**6
+"""Variants of one seed; those of the next begin after them."""
+
+Radii: TypeAlias = NDArray[np.float64]
+Worker = TypeVar("Worker", Tightener, Polish)
+Result = TypeVar("Result")
+
+Watch: TypeAlias = Callable[[], None]
+"""Called about ten times a second; whatever it raises stops the work."""
+
+
+class Submit(Protocol):
+    """Has a function done elsewhere, perhaps on another machine; what it returns waits for the result."""
+
+    def __call__(self, function: Callable[..., Result], /, *args: Any) -> Callable[[], Result]:
+        """Begin it."""
+
+
+def _unwatched() -> None:
+    pass
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A knot to search: the starts of a `name`, or a `curve` and its scrambles; `type` is the knot's."""
+
+    name: str | None
+    curve: Curve
+    type: Fingerprint
+
+    @classmethod
+    def of(cls, curve: Curve, name: str | None = None) -> Self:
+        """Return the source of a curve, which has this name if it is a known start."""
+        return cls(name, curve, fingerprint(curve))
+
+    def start(self, variant: int) -> Curve:
+        """Return a starting conformation; variant 0 is the plain one."""
+        if not variant:
+            return self.curve
+        return library.start(self.name, variant) if self.name else scramble(self.curve, variant)
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """What a trial ended in: a coarse rope, its L_a and its radii of gyration (3,).
+
+    `curve` is None where the trial came to nothing, and `changed` tells that this was for the knot's type.
+    `hits` counts the trials that ended so.
+    """
+
+    variant: int
+    length: float = float("inf")
+    radii: Radii = field(default_factory=lambda: np.full(3, np.inf))
+    curve: Curve | None = None
+    changed: bool = False
+    hits: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Minimum:
+    """A refined rope, the variant that led there, and the number of trials that did.
+
+    `tight` tells whether the polish reached its end, `residual` is the largest force left over, and `met` has
+    the radii of gyration of the coarse shapes that were refined to it.
+    """
+
+    variant: int
+    length: float
+    tight: bool
+    residual: float
+    curve: Curve
+    met: list[Radii]
+    hits: int = 0
+
+
+def attempt(source: Source, variant: int, watch: Watch = _unwatched) -> Shape:
+    """Make one trial."""
+    try:
+        collapsed = _done(Tightener(source.start(variant), "collapse", 0, "{}"), watch)
+        edge = _spread(*ANNEAL_EDGES, variant)
+        n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
+        settings = json.dumps(ANNEAL | {"seed": variant})
+        annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
+        n = round(annealed.status().best.l_p / TRIAL_EDGE)
+        polished = _done(Polish(annealed.best(), n, True, variant), watch)
+    except CurveError:
+        return Shape(variant)
+    curve = polished.best()
+    if fingerprint(curve) != source.type:
+        return Shape(variant, changed=True)
+    return Shape(variant, _length(polished.status().best), radii_of_gyration(curve), curve)
+
+
+def refine(shape: Shape, watch: Watch = _unwatched) -> Minimum:
+    """Polish a shape to the end on finer edges, from a few offsets along the rope; the shortest counts."""
+    assert shape.curve is not None
+    n = round(shape.length / FINE_EDGE)
+    found = []
+    for offset in range(OFFSETS):
+        polish = _done(Polish(shape.curve, n, False, offset), watch)
+        status = polish.status()
+        tight, length = status.outcome == "tight", _length(status.best)
+        found.append(Minimum(shape.variant, length, tight, status.residual, polish.best(), [shape.radii]))
+    return min(found, key=rank)
+
+
+def finish(minimum: Minimum, n: int, watch: Watch = _unwatched) -> Minimum:
+    """Polish a minimum on n vertices, doubling the vertices on the way there."""
+    run = Run(minimum.curve, [n], {}, "polish")
+    tight = run.tighten(lambda _: watch())
+    assert tight.residual is not None
+    return replace(
+        minimum,
+        length=_length(tight.measures),
+        tight=tight.converged,
+        residual=tight.residual,
+        curve=tight.curve,
+    )
+
+
+def rank(minimum: Minimum) -> tuple[bool, float]:
+    """Order tight ropes before others, then the shorter before the longer."""
+    return not minimum.tight, minimum.length
+
+
+def radii_of_gyration(curve: Curve) -> Radii:
+    """Return the three principal radii of gyration (3,) of all vertices, in increasing order."""
+    arms = np.vstack(curve)
+    arms = arms - arms.mean(axis=0)
+    radii: Radii = np.sqrt(np.linalg.eigvalsh(arms.T @ arms / len(arms)).clip(0))
+    return radii
+
+
+@dataclass
+class Search:
+    """A search under way, which can be saved after any round and go on later.
+
+    `trials` counts the variants tried so far, of which `changed` ended in another knot type (none should) and
+    `failed` could not be tightened. `shapes` are the shortest unrefined ones and `minima` the refined ones,
+    both shortest first.
+    """
+
+    seed: int = 0
+    trials: int = 0
+    changed: int = 0
+    failed: int = 0
+    shapes: list[Shape] = field(default_factory=list)
+    minima: list[Minimum] = field(default_factory=list)
+
+    def run(self, source: Source, rounds: Iterator[range], submit: Submit) -> Iterator[None]:
+        """Make the trials of these `rounds`, pausing after each; then refine the best shapes that are left.
+
+        `submit` has functions of this module done elsewhere.
+        """
+        refining = self._refined(submit, REFINED if self.trials else 0)
+        trying = self._tried(source, submit, next(rounds, range(0)))
+        while trying:
+            # Begun before the results of this round are in, so that no worker waits.
+            ahead = self._tried(source, submit, next(rounds, range(0)))
+            for trial in trying:
+                self._take(trial())
+            for minimum in refining:
+                self._keep(minimum())
+            yield
+            refining = self._refined(submit, REFINED)
+            trying = ahead
+        for minimum in refining:
+            self._keep(minimum())
+        for minimum in self._refined(submit, FINALISTS):
+            self._keep(minimum())
+        yield
+
+    def rounds(self, trials: int) -> Iterator[range]:
+        """Return the rounds from here to so many trials in all."""
+        return (range(i, min(i + ROUND, trials)) for i in range(self.trials, trials, ROUND))
+
+    def state(self) -> dict[str, Any]:
+        """Return all that is needed to go on later, for JSON; `Search.restore` is its inverse."""
+        return json.loads(json.dumps(vars(self), default=_plain))  # type: ignore[no-any-return]
+
+    @classmethod
+    def restore(cls, state: dict[str, Any]) -> Self:
+        """Return the search that gave this state."""
+        shapes = [
+            Shape(**shape | {"radii": np.array(shape["radii"]), "curve": as_curve(shape["curve"])})
+            for shape in state["shapes"]
+        ]
+        minima = [
+            Minimum(**old | {"met": list(map(np.array, old["met"])), "curve": as_curve(old["curve"])})
+            for old in state["minima"]
+        ]
+        return cls(**state | {"shapes": shapes, "minima": minima})
+
+    def _tried(self, source: Source, submit: Submit, trials: range) -> list[Callable[[], Shape]]:
+        first = self.seed * SEED_STRIDE
+        return [submit(attempt, source, first + trial) for trial in trials]
+
+    def _refined(self, submit: Submit, most: int) -> list[Callable[[], Minimum]]:
+        """Begin to refine the shortest shapes; they stay in the list until they are done."""
+        return [submit(refine, shape) for shape in self.shapes[:most]]
+
+    def _take(self, shape: Shape) -> None:
+        """Count a trial, and remember its shape if it is new."""
+        self.trials += 1
+        self.changed += shape.changed
+        self.failed += shape.curve is None and not shape.changed
+        if shape.curve is None:
+            return
+        for i, minimum in enumerate(self.minima):
+            if any(_alike(shape.radii, radii) for radii in minimum.met):
+                self.minima[i] = replace(minimum, hits=minimum.hits + 1)
+                return
+        for i, other in enumerate(self.shapes):
+            if _alike(shape.radii, other.radii):
+                shorter = min(shape, other, key=lambda shape: shape.length)
+                self.shapes[i] = replace(shorter, hits=other.hits + 1)
+                break
+        else:
+            self.shapes.append(shape)
+        self.shapes = sorted(self.shapes, key=lambda shape: shape.length)[:KEPT]
+
+    def _keep(self, found: Minimum) -> None:
+        """Take a refined shape for a new minimum, or for one that is known."""
+        same = [shape for shape in self.shapes if _alike(shape.radii, found.met[0])]
+        self.shapes = [shape for shape in self.shapes if shape not in same]
+        # Other trials may have met the shape while it was refined.
+        found = replace(found, hits=sum(shape.hits for shape in same))
+        radii = radii_of_gyration(found.curve)
+        for i, known in enumerate(self.minima):
+            near = abs(known.length - found.length) < SAME_LENGTH * found.length
+            if near and _alike(radii_of_gyration(known.curve), radii):
+                shorter = min(known, found, key=rank)
+                self.minima[i] = replace(shorter, met=known.met + found.met, hits=known.hits + found.hits)
+                break
+        else:
+            self.minima.append(found)
+        self.minima.sort(key=rank)
+
+
+def _done(worker: Worker, watch: Watch) -> Worker:
+    """Let an engine run to its end."""
+    while worker.advance(SLICE).outcome == "running":
+        watch()
+    return worker
+
+
+def _spread(least: float, most: float, number: int) -> float:
+    """Spread numbers evenly over a range by multiples of the golden ratio."""
+    return least + (most - least) * ((0.5 + number * (math.sqrt(5) - 1) / 2) % 1)
+
+
+def _length(measures: Measures) -> float:
+    return measures.l_a or measures.l_p
+
+
+def _alike(one: Radii, other: Radii) -> bool:
+    return bool((abs(one - other) < SAME_RADII * other).all())
+
+
+def _plain(value: Any) -> Any:
+    """Make arrays and dataclasses fit for JSON."""
+    return value.tolist() if isinstance(value, np.ndarray) else vars(value)

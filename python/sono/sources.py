@@ -1,0 +1,24 @@
+"""Where a curve comes from: a file, standard input, or the name of a knot."""
+
+import os
+
+import numpy as np
+
+from sono import formats, library
+from sono.formats import FormatError, VertexFile
+
+
+def is_name(source: str) -> bool:
+    """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
+    return source != "-" and not os.path.exists(source) and not set("./\\") & set(source)
+
+
+def read(source: str) -> VertexFile:
+    """Read a curve file, or draw the knot of this name. Raises `FormatError`."""
+    if not is_name(source):
+        return formats.read(source)
+    try:
+        curve = library.start(source)
+    except ValueError as error:
+        raise FormatError(f"{source}: no such file, nor a knot: {error}") from error
+    return VertexFile(source, curve, [np.arange(len(component)) + 1 for component in curve])

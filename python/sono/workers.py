@@ -1,0 +1,104 @@
+"""Where the trials of a search, or whole jobs, are done: threads of this machine, or a Dask cluster.
+
+Both give the same results, since what they do are pure functions.
+"""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from types import TracebackType
+from typing import Any, Protocol, Self, TypeVar, cast
+
+Result = TypeVar("Result")
+
+POLL = 0.2
+"""Seconds between two looks whether to stop waiting for the cluster."""
+
+RETRIES = 5
+"""How often a task is begun anew whose worker was lost."""
+
+
+class Workers(Protocol):
+    """Do functions elsewhere."""
+
+    count: int
+
+    def submit(
+        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
+    ) -> Callable[[], Result]:
+        """Begin a function; what is returned waits for its result.
+
+        `watch` is called about ten times a second meanwhile; what it raises ends the work and the waiting.
+        """
+
+
+class Threads:
+    """Threads of this process, as Rust releases the interpreter; functions get `watch` as last argument."""
+
+    def __init__(self, count: int) -> None:
+        """Keep so many threads."""
+        self.count = count
+        self.pool = ThreadPoolExecutor(count)
+
+    def submit(
+        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
+    ) -> Callable[[], Result]:
+        """Begin a function in the next free thread."""
+        return self.pool.submit(function, *args, watch).result
+
+    def __enter__(self) -> Self:
+        """Return the workers."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Forget what has not begun, and wait for the rest."""
+        self.pool.shutdown(cancel_futures=True)
+
+
+class Cluster:
+    """The workers of a Dask scheduler, each of which needs this version of sono.
+
+    A task whose worker is lost is done again by another one.
+    """
+
+    def __init__(self, address: str) -> None:
+        """Connect to a scheduler. Raises `ValueError` if there is none, or no dask.distributed."""
+        try:
+            from distributed import Client
+        except ImportError:
+            raise ValueError("a cluster needs an extra: pip install 'sono[cluster]'") from None
+        try:
+            self.client = cast(Any, Client(address, timeout=10))  # type: ignore[no-untyped-call]
+        except (OSError, ValueError) as error:
+            raise ValueError(f"{address}: no Dask scheduler answers there: {error}") from error
+        threads: dict[str, int] = self.client.nthreads()
+        self.count = max(sum(threads.values()), 1)
+
+    def submit(
+        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
+    ) -> Callable[[], Result]:
+        """Begin a function on some worker."""
+        future = self.client.submit(function, *args, pure=False, retries=RETRIES)
+
+        def wait() -> Result:
+            try:
+                while True:
+                    with suppress(TimeoutError):
+                        result: Result = future.result(timeout=POLL)
+                        return result
+                    watch()
+            except BaseException:
+                future.cancel()
+                raise
+
+        return wait
+
+    def __enter__(self) -> Self:
+        """Return the workers."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Leave the scheduler."""
+        self.client.close()
