@@ -1,6 +1,7 @@
 """The invariants against values from the literature, and against what must not change them."""
 
 import cmath
+import json
 import math
 
 import numpy as np
@@ -13,11 +14,12 @@ from sono.invariants import (
     crossings,
     diagram,
     fingerprint,
+    homfly,
     linking_matrix,
     signature,
     simplify,
 )
-from sono.library import start
+from sono.library import start, table
 from sono.scramble import scramble
 
 ROOTS = [cmath.exp(2j * math.pi / k) for k in (2, 3, 5)]
@@ -149,3 +151,23 @@ def test_the_wrong_type_is_noticed() -> None:
         fingerprint(start(name)) for name in ("unknot", "3_1", "T(2,-3)", "4_1", "5_1", "7_1", "8_19", "9_1")
     ]
     assert len(set(prints)) == len(prints)
+
+
+def test_homfly_polynomials_are_those_of_knotinfo() -> None:
+    """Those of the planar diagrams in KnotInfo; the starts are drawn from other notations."""
+    regina = pytest.importorskip("regina")
+    knotinfo = {row["name"]: row for row in pytest.importorskip("database_knotinfo").link_list()}
+    names = [row["knot"] for row in table("knots")]
+    for number, name in enumerate([*names[:20], *names[20::7], "12n_242"]):
+        known = regina.Link.fromPD(json.loads(knotinfo[name]["pd_notation"]))
+        assert homfly(start(name, number % 2)) == str(known.homflyAZ()), name
+
+
+def test_homfly_polynomials_of_links_and_mirror_images() -> None:
+    pytest.importorskip("regina")
+    assert homfly(start("m3_1")) != homfly(start("3_1"))
+    assert homfly(start("Hopf")) == homfly(braid([1, 1])) != homfly(mirror(start("Hopf")))
+    assert homfly(chain(1)) == "1"
+    assert homfly([*chain(1), *start("m3_1")]) != homfly(start("m3_1"))
+    # The skein relation: the unlink of two has (alpha - 1/alpha)/z.
+    assert homfly([chain(1)[0], chain(1)[0] + 100]) == "x y^-1 - x^-1 y^-1"

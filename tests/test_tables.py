@@ -4,10 +4,12 @@ import csv
 import io
 import json
 import math
+from pathlib import Path
 
 import pytest
 
-from sono.tables import COLUMNS, DEFAULT, FORMATS, Row, writer
+from sono.formats import FormatError
+from sono.tables import COLUMNS, DEFAULT, FORMATS, Row, read, writer
 
 TREFOIL: Row = {
     "knot": "3_1",
@@ -111,9 +113,7 @@ def test_latex_escapes_names() -> None:
 
 
 def test_precision_of_every_column() -> None:
-    row: Row = dict.fromkeys(COLUMNS, 1.23456789012) | dict.fromkeys(
-        ("n", "components", "trials", "sweeps", "factorisations"), 7
-    )
+    row: Row = {key: 7 if column.spec == "d" else 1.23456789012 for key, column in COLUMNS.items()}
     cells = dict(
         zip(COLUMNS, table("md", row, columns=tuple(COLUMNS)).splitlines()[4].split("|")[1:], strict=False)
     )
@@ -128,8 +128,33 @@ def test_precision_of_every_column() -> None:
         "r_s": "1.234567890",
         "sweeps": "7",
         "seconds": "1.23",
+        "l_a_difference": "+1.2346",
     }
     assert {key: cells[key].strip() for key in expected} == expected
+
+
+@pytest.mark.parametrize("format", ["tsv", "csv", "json"])
+def test_a_table_is_read_as_it_was_written(format: str, tmp_path: Path) -> None:
+    rows: list[Row] = [TREFOIL, {"knot": "m3_1", "n": 7, "l_a": None, "seconds": 2.0}]
+    columns = ("knot", "n", "dl", "l_a", "seconds")
+    (tmp_path / "table").write_text(table(format, *rows, columns=columns))
+    assert read(str(tmp_path / "table")) == [{key: row.get(key) for key in columns} for row in rows]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "table:1: has no column knot"),
+        ("n\tL_a\n3\t4\n", "table:1: has no column knot"),
+        ("knot\tn\n3_1\tx\n", "table:2: does not fit the header: invalid literal"),
+        ("knot\tn\n3_1\n", "table:2: does not fit the header"),
+        ('{"knot": "3_1"}\n{"knot": \n', "table:2: is no JSON"),
+    ],
+)
+def test_no_table(text: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "table").write_text(text)
+    with pytest.raises(FormatError, match=message):
+        read(str(tmp_path / "table"))
 
 
 class Flushed(io.StringIO):

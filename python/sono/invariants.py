@@ -60,8 +60,10 @@ def homfly(curve: Curve) -> str:
     """Return the HOMFLY polynomial in Regina's variables alpha and z. Raises ImportError without regina."""
     import regina
 
-    polynomial = regina.Link.fromPD(planar_diagram(diagram(curve))).homflyAZ()
-    return str(polynomial)
+    found = diagram(curve)
+    link = regina.Link.fromPD(planar_diagram(found))
+    link.insertLink(regina.Link(len(curve) - link.countComponents()))  # circles without crossings
+    return str(link.homflyAZ())
 
 
 def planar_diagram(found: Crossings) -> list[tuple[int, int, int, int]]:

@@ -14,6 +14,9 @@ Result = TypeVar("Result")
 POLL = 0.2
 """Seconds between two looks whether to stop waiting for the cluster."""
 
+PATIENCE = 10
+"""Seconds to wait for a scheduler to answer."""
+
 RETRIES = 5
 """How often a task is begun anew whose worker was lost."""
 
@@ -68,7 +71,7 @@ class Cluster:
         except ImportError:
             raise ValueError("a cluster needs an extra: pip install 'sono[cluster]'") from None
         try:
-            self.client = cast(Any, Client(address, timeout=10))  # type: ignore[no-untyped-call]
+            self.client = cast(Any, Client(address, timeout=PATIENCE))  # type: ignore[no-untyped-call]
         except (OSError, ValueError) as error:
             raise ValueError(f"{address}: no Dask scheduler answers there: {error}") from error
         threads: dict[str, int] = self.client.nthreads()

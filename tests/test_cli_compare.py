@@ -1,0 +1,56 @@
+"""`sono compare`: published ropelengths beside ours."""
+
+from pathlib import Path
+
+import pytest
+from conftest import Sono
+
+from sono import library, published, tables
+
+TABLE = "knot\tn\tL_a\tL_c\n8_4\t359\t71.45\t71.69\nm3_1\t164\t32.75\t32.7\nHopf\t60\t25.1\t-\n"
+
+
+def test_the_differences_have_their_signs(folder: Path, sono: Sono) -> None:
+    result = sono("compare", "-", "--format", "json", input=TABLE)
+    assert result.exit_code == 0
+    Path("rows").write_text(result.stdout)
+    chiral, mirrored, link = tables.read("rows")
+    assert (chiral["published"], chiral["source"]) == (71.4704, "ACPR 2011")
+    assert chiral["l_a_difference"] == pytest.approx(-0.0204)
+    assert chiral["l_c_difference"] == pytest.approx(0.2196)
+    assert mirrored["l_a_difference"] == pytest.approx(0.0064)
+    assert link["published"] is None
+    assert result.stderr == "sono: of 2 rows L_a is at most the published value in 1, L_c in 1\n"
+
+
+def test_the_finer_level_counts_for_l_c(folder: Path, sono: Sono) -> None:
+    Path("fine.tsv").write_text("knot\tL_a\tL_c\tL_c(fine)\n8_4\t71.45\t71.69\t71.46\n")
+    result = sono("compare", "fine.tsv", "--columns", "l_c_difference", "-q")
+    assert float(result.stdout.splitlines()[1]) == pytest.approx(-0.0104)
+    assert result.stderr == ""
+
+
+def test_another_table_to_compare_with(folder: Path, sono: Sono) -> None:
+    Path("mine.tsv").write_text("knot\tL_a\nHopf\t25.0\n")
+    result = sono("compare", "-", "--published", "mine.tsv", input=TABLE)
+    assert "Hopf\t60\t25.1\t-\t25.0\tmine.tsv\t0.1" in result.stdout
+
+
+def test_a_pipe_from_measure(folder: Path, sono: Sono) -> None:
+    result = sono("compare", "-", input=sono("measure", "3_1.txt").stdout)
+    assert result.exit_code == 0
+    assert result.stdout.splitlines()[1].startswith("3_1\t69\t")
+
+
+def test_no_table(folder: Path, sono: Sono) -> None:
+    result = sono("compare", "3_1.txt")
+    assert result.exit_code == 1
+    assert "3_1.txt:1: has no column knot" in result.stderr
+
+
+def test_the_published_table_has_every_knot() -> None:
+    table = published.table()
+    assert list(table) == [row["knot"] for row in library.table("knots")]
+    assert {row["source"] for row in table.values()} == {"ACPR 2011", "KnotInfo 2026.11.2"}
+    # Table 1 of Ashton, Cantarella, Piatek and Rawdon.
+    assert [table[knot]["published"] for knot in ("3_1", "4_1", "8_18")] == [32.7436, 42.0887, 74.9063]

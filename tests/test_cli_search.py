@@ -1,0 +1,162 @@
+"""`sono search`: batches of names and files, what is written, what is kept."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from conftest import Sono, Spawn, vertices
+
+from sono import formats, library, measure, search, tables
+
+ONE = ("--trials", "1", "--minima", "1")
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "ANNEAL", {"anneal_sweeps": 5000, "anneal_tolerance": 0.5})
+
+
+def rows(text: str) -> list[tables.Row]:
+    Path("rows.tsv").write_text(text)
+    return tables.read("rows.tsv")
+
+
+def test_the_rows_are_minima_and_the_file_is_the_shortest(folder: Path, sono: Sono) -> None:
+    result = sono("search", "5_2", "--trials", "10", "-j", "2")
+    assert (result.exit_code, result.stderr) == (0, "")
+    best, *others = rows(result.stdout)
+    assert best["status"] == "tight"
+    assert 49.4 < float(best["l_a"] or 0) < 49.47
+    assert all(float(row["l_a"] or 0) > float(best["l_a"] or 0) for row in others)
+    assert measure(formats.read("5_2.tight.txt").components).l_a == best["l_a"]
+    assert "# searched: variant " in (folder / "5_2.tight.txt").read_text()
+
+
+def test_a_batch_goes_on_past_what_is_wrong(folder: Path, sono: Sono) -> None:
+    (folder / "list.txt").write_text("# a library\nT(2,4)  # a link\n\nm3_1\n")
+    result = sono("search", "3_2", "3_1.txt", "--list", "list.txt", *ONE, "-o", "out/")
+    assert result.exit_code == 1
+    assert "3_2: no such file, nor a knot: unknown knot" in result.stderr
+    assert sorted(str(row["knot"]) for row in rows(result.stdout)) == ["3_1", "T(2,4)", "m3_1"]
+    assert sorted(os.listdir("out")) == ["3_1.tight.txt", "T(2,4).tight.txt", "m3_1.tight.txt"]
+
+
+def test_shards_share_a_list(folder: Path, sono: Sono) -> None:
+    shares = [
+        sono(
+            "search",
+            "3_1",
+            "T(2,4)",
+            "Hopf",
+            "--trials",
+            "1",
+            "--minima",
+            "1",
+            "--shard",
+            f"{i}/2",
+            "-o",
+            "out/",
+        )
+        for i in (1, 2)
+    ]
+    knots = [[row["knot"] for row in rows(share.stdout)] for share in shares]
+    assert knots == [["3_1", "Hopf"], ["T(2,4)"]]
+
+
+def test_finer_edges(sono: Sono) -> None:
+    (row,) = rows(sono("search", "3_1", "--trials", "1", "--dl", "0.05", "--minima", "1").stdout)
+    assert float(row["dl"] or 0) == pytest.approx(0.05, rel=0.01)
+    assert row["status"] == "tight"
+    assert measure(formats.read("3_1.tight.txt").components).n == row["n"]
+
+
+def test_what_is_finished_is_kept(folder: Path, sono: Sono) -> None:
+    sono("search", "3_1", "--trials", "2", "-o", "3_1.tight.txt")
+    before = (folder / "3_1.tight.txt").stat().st_mtime_ns
+    result = sono("search", "3_1", "--trials", "2", "--resume")
+    assert result.exit_code == 0
+    (row,) = rows(result.stdout)
+    assert (row["trials"], row["status"]) == (2, "tight")
+    assert (folder / "3_1.tight.txt").stat().st_mtime_ns == before
+    # More trials are another matter, and so is a file that was tampered with.
+    assert rows(sono("search", "3_1", "--trials", "3", "--resume").stdout)[0]["trials"] == 3
+    text = (folder / "3_1.tight.txt").read_text().splitlines(True)
+    (folder / "3_1.tight.txt").write_text("".join(text[:-1]))
+    assert rows(sono("search", "3_1", "--trials", "3", "--resume").stdout)[0]["variant"] is not None
+
+
+def test_a_checkpoint_makes_the_whole_of_two_halves(folder: Path, sono: Sono) -> None:
+    more = ("--checkpoint", "kept", "--minima", "1")
+    sono("search", "4_1", "--trials", "4", *more)
+    half = rows(sono("search", "4_1", "--trials", "8", "--resume", *more).stdout)
+    whole = rows(sono("search", "4_1", "--trials", "8", "-o", "whole.txt", "--minima", "1").stdout)
+    assert half[0]["l_a"] == pytest.approx(whole[0]["l_a"], abs=1e-4)
+    assert half[0]["trials"] == 8
+
+
+def test_a_checkpoint_of_another_knot(folder: Path, sono: Sono) -> None:
+    sono("search", "3_1", "--trials", "1", "--checkpoint", "kept")
+    os.rename("kept/3_1.search.json", "kept/4_1.search.json")
+    result = sono("search", "4_1", "--trials", "1", "--checkpoint", "kept", "--resume")
+    assert result.exit_code == 1
+    assert "is of another knot or seed" in result.stderr
+    (folder / "kept/4_1.search.json").write_text("{}")
+    result = sono("search", "4_1", "--trials", "1", "--checkpoint", "kept", "--resume")
+    assert "is no checkpoint of a search" in result.stderr
+
+
+def test_standard_input_and_output(folder: Path, sono: Sono) -> None:
+    result = sono("search", "-", "--trials", "1", "-o", "-", input=(folder / "3_1.txt").read_text())
+    assert result.exit_code == 0
+    assert result.stdout.startswith("# stdin: ")
+    assert "L_a" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "give a FILE or the NAME of a knot"),
+        (["3_1", "4_1", "-o", "one.txt"], "-o names one file for several knots"),
+        (["3_1", "--force", "--resume"], "give one of them"),
+        (["3_1", "--shard", "3/2"], "give I/N with I from 1 to N"),
+        (["3_1", "--list", "nowhere.txt"], "does not exist"),
+        (["3_1", "3_1"], "2 of the files would write 3_1.tight.txt"),
+        (["3_1", "--dl", "3"], "--dl"),
+    ],
+)
+def test_usage_errors(sono: Sono, arguments: list[str], message: str) -> None:
+    result = sono("search", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+
+
+def test_a_signal_keeps_the_best(folder: Path, spawn: Spawn) -> None:
+    process = spawn("search", "3_1", "--time-limit", "600", "--checkpoint", "kept")
+    for _ in range(600):
+        if (folder / "3_1.tight.txt").exists():
+            break
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    output, messages = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted; the best of" in messages
+    assert "--resume goes on from here" in messages
+    assert rows(output)[0]["status"] == "stopped"
+    assert "stopped" in (folder / "3_1.tight.txt").read_text()
+    assert vertices(folder / "3_1.tight.txt")
+    assert (folder / "kept/3_1.search.json").exists()
+
+
+def test_a_time_limit_ends_well(folder: Path, sono: Sono) -> None:
+    result = sono("search", "3_1", "--time-limit", "0.5", "--minima", "1")
+    assert result.exit_code == 0
+    assert rows(result.stdout)[0]["status"] == "tight"
+
+
+def test_tighten_takes_names_too(folder: Path, sono: Sono) -> None:
+    result = sono("tighten", "m3_1", "-n", "60", "--trials", "1", "--set", "anneal_sweeps=5000")
+    assert result.exit_code == 0
+    assert [row["knot"] for row in rows(result.stdout)] == ["m3_1"]
+    assert library.start("m3_1")

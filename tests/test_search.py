@@ -1,0 +1,146 @@
+"""The search: what a trial gives, which minima are told apart, and that it matters not who does the work."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sono import library, measure, search
+from sono.invariants import fingerprint
+from sono.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Short anneals are enough for knots of few crossings."""
+    monkeypatch.setattr(search, "ANNEAL", {"anneal_sweeps": 5000, "anneal_tolerance": 0.5})
+
+
+def source(knot: str) -> Source:
+    return Source.of(library.start(knot), knot)
+
+
+def here(function: Callable[..., Any], *args: Any) -> Callable[[], Any]:
+    """Do a function at once."""
+    result = function(*args)
+    return lambda: result
+
+
+def late(function: Callable[..., Any], *args: Any) -> Callable[[], Any]:
+    """Do a function when its result is wanted."""
+    return lambda: function(*args)
+
+
+def run(knot: str, trials: int, found: Search | None = None, submit: Any = here) -> Search:
+    found = found or Search()
+    for _ in found.run(source(knot), found.rounds(trials), submit):
+        pass
+    return found
+
+
+def test_a_trial_ends_in_a_short_rope_of_the_type() -> None:
+    shape = attempt(source("4_1"), 3)
+    assert shape.curve is not None
+    assert fingerprint(shape.curve) == fingerprint(library.start("4_1"))
+    assert shape.length == measure(shape.curve).l_a
+    assert 42 < shape.length < 42.5
+    np.testing.assert_array_equal(shape.radii, radii_of_gyration(shape.curve))
+
+
+def test_a_trial_follows_its_variant() -> None:
+    one, again, other = (attempt(source("4_1"), variant) for variant in (1, 1, 2))
+    assert one.length == again.length != other.length
+
+
+def test_a_trial_that_changes_the_type_is_found_out() -> None:
+    trefoil = source("3_1")
+    wrong = replace(trefoil, type=fingerprint(library.start("4_1")))
+    assert attempt(wrong, 0).changed
+    assert attempt(wrong, 0).curve is None
+    counted = Search()
+    for _ in counted.run(wrong, counted.rounds(2), here):
+        pass
+    assert (counted.trials, counted.changed, counted.failed, counted.minima) == (2, 2, 0, [])
+
+
+def test_a_start_that_cannot_be_tightened_is_counted() -> None:
+    flat = [np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 0, 0.0]])]
+    counted = Search()
+    hopeless = Source(None, flat, fingerprint(library.start("unknot")))
+    for _ in counted.run(hopeless, counted.rounds(1), here):
+        pass
+    assert (counted.trials, counted.changed, counted.failed) == (1, 0, 1)
+
+
+def test_refined_and_finished_ropes_are_tight() -> None:
+    minimum = refine(attempt(source("3_1"), 0))
+    assert minimum.tight
+    assert minimum.residual <= 1e-8
+    assert minimum.length == pytest.approx(32.7429, abs=1e-3)
+    assert measure(minimum.curve).dl == pytest.approx(search.FINE_EDGE, rel=0.01)
+    fine = finish(minimum, 480)
+    assert fine.tight
+    assert (fine.variant, measure(fine.curve).n) == (minimum.variant, 480)
+    assert fine.length == pytest.approx((4 * 32.739828 + 32.755154) / 5, abs=2e-6)  # README
+
+
+def test_the_shortest_known_rope_is_found() -> None:
+    found = run("6_1", 16)
+    best = found.minima[0]
+    assert best.length < 56.7058  # ACPR 2011; single greedy runs end 1.5 % above
+    assert best.tight
+    assert [minimum.length for minimum in found.minima] == sorted(minimum.length for minimum in found.minima)
+    assert found.trials == 16
+    assert sum(minimum.hits for minimum in found.minima) + sum(s.hits for s in found.shapes) == 16
+
+
+def test_the_workers_do_not_matter() -> None:
+    one, other = run("3_1", 12), run("3_1", 12, submit=late)
+    assert one.state() == other.state()
+
+
+def test_a_saved_search_goes_on_as_if_it_had_never_stopped() -> None:
+    whole = Search()
+    for _ in whole.run(source("3_1"), whole.rounds(24), here):
+        pass
+    half = Search()
+    pauses = half.run(source("3_1"), half.rounds(24), here)
+    next(pauses)
+    assert half.trials == 8
+    half = Search.restore(json.loads(json.dumps(half.state())))
+    assert run("3_1", 24, half).state() == whole.state()
+
+
+def test_seeds_begin_elsewhere() -> None:
+    found = run("3_1", 2, Search(seed=3))
+    assert {minimum.variant for minimum in found.minima} <= {3_000_000, 3_000_001}
+
+
+def test_shapes_are_told_apart_by_their_radii() -> None:
+    found = Search()
+    curve = library.start("3_1")
+    for variant, (length, radii) in enumerate([(9.0, (1, 1, 1)), (8.0, (1, 1, 1.001)), (7.0, (1, 1, 2))]):
+        found._take(Shape(variant, length, np.array(radii, float), curve))
+    assert [(shape.variant, shape.hits) for shape in found.shapes] == [(2, 1), (1, 2)]
+
+
+def test_a_curve_is_searched_by_its_scrambles() -> None:
+    curve = library.start("3_1")
+    unnamed = Source.of(curve)
+    assert unnamed.start(0) is curve
+    assert len(unnamed.start(1)[0]) != len(curve[0])
+    assert fingerprint(unnamed.start(1)) == unnamed.type
+    assert attempt(unnamed, 1).length == pytest.approx(32.7, abs=0.3)
+
+
+def test_what_watches_can_stop_a_trial(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "SLICE", 1e-4)
+
+    def stop() -> None:
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        attempt(source("8_18"), 0, stop)
