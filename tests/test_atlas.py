@@ -6,6 +6,7 @@ import pytest
 from conftest import Sono
 
 from sono import formats, library, measure, search, tables
+from sono import tighten as sono_tighten
 from sono.atlas import Atlas, confirmed_type
 from sono.invariants import fingerprint
 
@@ -20,8 +21,11 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def tight(path: Path, knot: str, n: int) -> str:
     """Write a tight rope, as a search would."""
-    found = search.finish(search.refine(search.attempt(search.Source.of(library.start(knot), knot), 0)), n)
-    formats.write(path, found.curve, ["searched: variant 0, seed 0, met in 1 of 1 trials, 1 s"])
+    shape = search.attempt(search.Source.of(library.start(knot), knot), 0)
+    assert shape.curve
+    found = sono_tighten(shape.curve, n, method="polish")
+    header = f"{knot}: tight, rope radius R_s = 1"
+    formats.write(path, found.curve, [header, "searched: variant 0, seed 0, met in 1 of 1 trials, 1 s"])
     return str(path)
 
 
@@ -53,15 +57,30 @@ def test_the_atlas_is_whole() -> None:
 
 def test_a_row_never_gets_worse(tmp_path: Path) -> None:
     atlas = Atlas(tmp_path)
-    coarse, fine = (tight(tmp_path / f"{n}.txt", "3_1", n) for n in (120, 164))
-    row = atlas.take("3_1", fine)  # L_a rises with n
-    kept = Path(atlas.path("3_1")).read_text()
-    better = atlas.take("3_1", coarse)
-    assert float(better["l_a"] or 0) < float(row["l_a"] or 0)
-    assert atlas.take("3_1", fine) == better == atlas.checked("3_1")
-    assert Path(atlas.path("3_1")).read_text() != kept
-    assert (row["variant"], row["seed"], row["published"]) == (0, 0, 32.7436)
-    assert list(tables.read(str(tmp_path / "atlas.tsv"))) == [better]
+    # 6_1 has two minima; the braid, variant 0, leads to the longer one.
+    short, long = tmp_path / "short.txt", tmp_path / "long.txt"
+    tight(long, "6_1", 288)
+    shape = search.attempt(search.Source.of(library.start("6_1"), "6_1"), 7)
+    assert shape.curve
+    formats.write(short, shape.curve)
+    row = atlas.take("6_1", str(long))
+    assert (row["variant"], row["seed"], row["published"]) == (0, 0, 56.7058)
+    better = atlas.take("6_1", str(short))
+    assert float(better["l_a"] or 0) < 56.7058 < float(row["l_a"] or 0)
+    assert better["variant"] is None  # it did not say
+    assert atlas.take("6_1", str(long)) == better == atlas.checked("6_1")
+    assert tables.read(str(tmp_path / "atlas.tsv")) == [better]
+
+
+def test_ropes_are_brought_to_one_edge_length(tmp_path: Path) -> None:
+    atlas = Atlas(tmp_path)
+    row = atlas.take("3_1", tight(tmp_path / "coarse.txt", "3_1", 60))
+    assert abs(float(row["dl"] or 0) - 0.2) < 0.004
+    assert row["l_a"] == pytest.approx(32.7429, abs=1e-4)
+    formats.write(tmp_path / "large.txt", [7 * c for c in formats.read(atlas.path("3_1")).components])
+    (tmp_path / "tight/3_1.txt").unlink()
+    assert atlas.take("3_1", str(tmp_path / "large.txt"))["l_a"] == pytest.approx(row["l_a"], abs=1e-6)
+    assert measure(formats.read(atlas.path("3_1")).components).r_s == pytest.approx(1, abs=1e-9)
 
 
 def test_another_knot_is_not_taken(tmp_path: Path) -> None:
@@ -88,7 +107,7 @@ def test_the_command_updates_and_checks(folder: Path, sono: Sono) -> None:
     file = folder / "mine/tight/3_1.txt"
     formats.write(file, [2 * component for component in formats.read(file).components])
     formats.write(file, library.start("3_1"))
-    assert "in its row is not that of its file" in sono("atlas", "3_1", *more).stderr
+    assert "its row is not that of its file" in sono("atlas", "3_1", *more).stderr
     formats.write(file, library.start("4_1"))
     assert "another knot type" in sono("atlas", "3_1", *more).stderr
 

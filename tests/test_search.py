@@ -77,6 +77,7 @@ def test_a_start_that_cannot_be_tightened_is_counted() -> None:
 
 def test_refined_and_finished_ropes_are_tight() -> None:
     minimum = refine(attempt(source("3_1"), 0))
+    assert minimum
     assert minimum.tight
     assert minimum.residual <= 1e-8
     assert minimum.length == pytest.approx(32.7429, abs=1e-3)

@@ -100,15 +100,21 @@ class SentJob:
         try:
             content = formats.load(job.source) if not sources.is_name(job.source) else None
             sent = replace(job, outputs=outputs, resume=False)
-            waiting = self.workers.submit(_away, sent, content, watch=lambda: show(0, "on the cluster"))
+            free = {path: free_name(path) for path in outputs.values()}
+            waiting = self.workers.submit(_away, sent, content, free, watch=lambda: show(0, "on the cluster"))
             results, texts = waiting()
-            for path, text in texts.items():
-                formats.save(path, text)
-            yield from results
         except FormatError as error:
             yield Result(None, str(error))
+            return
         except Stopped as why:
             yield Result(None, f"{job.name}: {why}; what the cluster had done of it is lost")
+            return
+        for path, text in texts.items():
+            try:
+                formats.save(path, text)
+            except FormatError as error:
+                yield Result(None, str(error))
+        yield from results
 
 
 @dataclass(frozen=True)
@@ -151,8 +157,14 @@ def run(job: Job, watch: Callable[[Progress], None]) -> Iterator[Result]:
         yield Result(None, str(error))
 
 
-def _away(job: Job, content: tuple[str, str] | None) -> "tuple[list[Result], dict[str, str]]":
-    """Do a job far from its files: give its results, and what is to be written to them."""
+def _away(
+    job: Job, content: tuple[str, str] | None, free: dict[str, str]
+) -> "tuple[list[Result], dict[str, str]]":
+    """Do a job far from its files: give its results, and what is to be written to them.
+
+    `content` is the name and the text of its source, if that is a file; `free` says for each output where an
+    unfinished rope is to go.
+    """
     with tempfile.TemporaryDirectory() as folder:
         here: dict[str, str] = {}
 
@@ -160,7 +172,7 @@ def _away(job: Job, content: tuple[str, str] | None) -> "tuple[list[Result], dic
             suffix = "" if path == "-" else Path(path).suffix
             temporary = os.path.join(folder, f"{len(here)}{suffix}")
             here[temporary] = path
-            here[free_name(temporary)] = free_name(path)
+            here[free_name(temporary)] = free.get(path, path)
             return temporary
 
         source = moved(content[0]) if content else job.source
@@ -418,8 +430,8 @@ def title(name: str, status: str, m: Measures) -> list[str]:
 
 def is_stream(output: str) -> bool:
     """Tell what can be written to but not read again: standard output, a device, a pipe."""
-    path = Path(output)
-    return output == "-" or (path.exists() and not path.is_file() and not path.is_dir())
+    there = os.path.exists(output)
+    return output == "-" or (there and not os.path.isfile(output) and not os.path.isdir(output))
 
 
 def free_name(output: str) -> str:

@@ -105,6 +105,7 @@ def _strokes(text: str) -> Strokes:
     return [(int(low) - 1, int(high) - 1) for low, high in ends]
 
 
+@cache  # its table takes a second to read
 def _from_knotinfo(name: str) -> dict[str, str]:
     """Return the row of a knot of 11 to 13 crossings. Raises ValueError if there is none, or no KnotInfo."""
     try:
@@ -113,12 +114,12 @@ def _from_knotinfo(name: str) -> dict[str, str]:
         raise ValueError(
             f"{name!r} has more than 10 crossings: its table is an extra; pip install 'sono[knotinfo]'"
         ) from None
-    for found in link_list():
-        if found["name"] == name:
-            # "[1,-2]", or several words "[[1,-2],[1,2]]".
-            word = re.search(r"[-\d, ]+", found["braid_notation"])
-            points = json.loads(found["grid_notation"])
-            columns = [[y for x, y in points if x == column] for column in range(1, len(points) // 2 + 1)]
-            grid_text = " ".join(f"{low}-{high}" for low, high in columns)
-            return {"knot": name, "braid": word[0] if word else "", "grid": grid_text}
-    raise ValueError(f"unknown knot {name!r}: KnotInfo has no such name")
+    found = next((row for row in link_list() if row["name"] == name), None)
+    if not found:
+        raise ValueError(f"unknown knot {name!r}: KnotInfo has no such name")
+    # "[1,-2]", or several words "[[1,-2],[1,2]]".
+    word = re.search(r"[-\d, ]+", found["braid_notation"])
+    points = json.loads(found["grid_notation"])
+    columns = [[y for x, y in points if x == column] for column in range(1, len(points) // 2 + 1)]
+    grid_text = " ".join(f"{low}-{high}" for low, high in columns)
+    return {"knot": name, "braid": word[0] if word else "", "grid": grid_text}

@@ -47,7 +47,7 @@ SAME_SHAPE = 1e-5
 OFFSETS = 3
 OFFSETS_TO = 1000
 """Offsets along the rope from which the last n is refined, up to this n: beads settle in other grooves each
-time, which matters less the finer they are."""
+time, which matters less the finer they are. Above it the others are tried where one did not get tight."""
 
 HOT = 0.5
 """Violation tolerated at the start of every other trial's anneal; it crosses higher barriers."""
@@ -330,8 +330,10 @@ class Run:
         n = self.targets[0]
         if self.rungs != [("polish", n)]:
             return self.rungs == [("settle", n)]
-        several = n <= OFFSETS_TO and sum(map(len, self.curve)) != n
-        return self.offset + 1 == (OFFSETS if several else 1)
+        assert self.worker is not None
+        stuck = self.worker.status().outcome != "tight"
+        several = (n <= OFFSETS_TO or stuck) and sum(map(len, self.curve)) != n
+        return self.offset + 1 >= (OFFSETS if several else 1)
 
     def _better(self) -> Polish | Tightener:
         """Return the better of the worker, which is done, and its rival; the other one's work is added up."""

@@ -3,7 +3,7 @@
 from functools import cache
 
 from sono import library, tables
-from sono.tables import Row
+from sono.tables import Row, Value
 
 
 @cache
@@ -32,11 +32,13 @@ def beside(row: Row, published: dict[str, Row]) -> Row:
     The difference of L_c is that of the finer level, where the row has one.
     """
     other = published.get(str(row["knot"]).removeprefix("m"), {})
-    bound = other.get("published")
-    if not isinstance(bound, float):
-        return row
+    bound, source = other.get("published"), other.get("source")
     ours = {"l_a": row.get("l_a"), "l_c": row.get("l_c_fine") or row.get("l_c")}
-    differences = {
-        f"{key}_difference": value - bound for key, value in ours.items() if isinstance(value, float)
-    }
-    return {**row, "published": bound, "source": other.get("source"), **differences}
+    differences = {f"{key}_difference": _difference(value, bound) for key, value in ours.items()}
+    return {**row, "published": bound, "source": source, **differences}
+
+
+def _difference(ours: Value, bound: Value) -> float | None:
+    if isinstance(ours, int | float) and isinstance(bound, int | float):
+        return ours - bound
+    return None

@@ -66,6 +66,10 @@ Watch: TypeAlias = Callable[[], None]
 """Called about ten times a second; whatever it raises stops the work."""
 
 
+Refining: TypeAlias = "tuple[Shape, Callable[[], Minimum | None]]"
+"""A shape, and what waits for it to be refined."""
+
+
 class Submit(Protocol):
     """Has a function done elsewhere, perhaps on another machine; what it returns waits for the result."""
 
@@ -73,8 +77,8 @@ class Submit(Protocol):
         """Begin it."""
 
 
-def _unwatched() -> None:
-    pass
+def unwatched() -> None:
+    """Let the work go on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,8 +134,8 @@ class Minimum:
     hits: int = 0
 
 
-def attempt(source: Source, variant: int, watch: Watch = _unwatched) -> Shape:
-    """Make one trial."""
+def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
+    """Make one trial. A start that cannot be drawn or tightened gives a shape without a curve."""
     try:
         collapsed = _done(Tightener(source.start(variant), "collapse", 0, "{}"), watch)
         edge = _spread(*ANNEAL_EDGES, variant)
@@ -140,7 +144,7 @@ def attempt(source: Source, variant: int, watch: Watch = _unwatched) -> Shape:
         annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
         n = round(annealed.status().best.l_p / TRIAL_EDGE)
         polished = _done(Polish(annealed.best(), n, True, variant), watch)
-    except CurveError:
+    except ValueError:  # CurveError, or a curve that no scramble can be made of
         return Shape(variant)
     curve = polished.best()
     if fingerprint(curve) != source.type:
@@ -148,20 +152,26 @@ def attempt(source: Source, variant: int, watch: Watch = _unwatched) -> Shape:
     return Shape(variant, _length(polished.status().best), radii_of_gyration(curve), curve)
 
 
-def refine(shape: Shape, watch: Watch = _unwatched) -> Minimum:
-    """Polish a shape to the end on finer edges, from a few offsets along the rope; the shortest counts."""
+def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
+    """Polish a shape to the end on finer edges, from a few offsets along the rope; the shortest counts.
+
+    Returns None for a shape that cannot be refined.
+    """
     assert shape.curve is not None
     n = round(shape.length / FINE_EDGE)
     found = []
     for offset in range(OFFSETS):
-        polish = _done(Polish(shape.curve, n, False, offset), watch)
+        try:
+            polish = _done(Polish(shape.curve, n, False, offset), watch)
+        except CurveError:
+            continue
         status = polish.status()
         tight, length = status.outcome == "tight", _length(status.best)
         found.append(Minimum(shape.variant, length, tight, status.residual, polish.best(), [shape.radii]))
-    return min(found, key=rank)
+    return min(found, key=rank, default=None)
 
 
-def finish(minimum: Minimum, n: int, watch: Watch = _unwatched) -> Minimum:
+def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum:
     """Polish a minimum on n vertices, doubling the vertices on the way there."""
     run = Run(minimum.curve, [n], {}, "polish")
     tight = run.tighten(lambda _: watch())
@@ -216,15 +226,12 @@ class Search:
             ahead = self._tried(source, submit, next(rounds, range(0)))
             for trial in trying:
                 self._take(trial())
-            for minimum in refining:
-                self._keep(minimum())
+            self._keep(refining)
             yield
             refining = self._refined(submit, REFINED)
             trying = ahead
-        for minimum in refining:
-            self._keep(minimum())
-        for minimum in self._refined(submit, FINALISTS):
-            self._keep(minimum())
+        self._keep(refining)
+        self._keep(self._refined(submit, FINALISTS))
         yield
 
     def rounds(self, trials: int) -> Iterator[range]:
@@ -252,9 +259,9 @@ class Search:
         first = self.seed * SEED_STRIDE
         return [submit(attempt, source, first + trial) for trial in trials]
 
-    def _refined(self, submit: Submit, most: int) -> list[Callable[[], Minimum]]:
+    def _refined(self, submit: Submit, most: int) -> list[Refining]:
         """Begin to refine the shortest shapes; they stay in the list until they are done."""
-        return [submit(refine, shape) for shape in self.shapes[:most]]
+        return [(shape, submit(refine, shape)) for shape in self.shapes[:most]]
 
     def _take(self, shape: Shape) -> None:
         """Count a trial, and remember its shape if it is new."""
@@ -276,12 +283,17 @@ class Search:
             self.shapes.append(shape)
         self.shapes = sorted(self.shapes, key=lambda shape: shape.length)[:KEPT]
 
-    def _keep(self, found: Minimum) -> None:
-        """Take a refined shape for a new minimum, or for one that is known."""
-        same = [shape for shape in self.shapes if _alike(shape.radii, found.met[0])]
-        self.shapes = [shape for shape in self.shapes if shape not in same]
-        # Other trials may have met the shape while it was refined.
-        found = replace(found, hits=sum(shape.hits for shape in same))
+    def _keep(self, refining: list[Refining]) -> None:
+        """Wait for refined shapes; take each for a new minimum, or for one that is known."""
+        for shape, refined in refining:
+            found = refined()
+            # Other trials may have met the shape while it was refined.
+            same = [other for other in self.shapes if _alike(other.radii, shape.radii)]
+            self.shapes = [other for other in self.shapes if other not in same]
+            if found:
+                self._merge(replace(found, hits=sum(shape.hits for shape in same)))
+
+    def _merge(self, found: Minimum) -> None:
         radii = radii_of_gyration(found.curve)
         for i, known in enumerate(self.minima):
             near = abs(known.length - found.length) < SAME_LENGTH * found.length
@@ -291,7 +303,7 @@ class Search:
                 break
         else:
             self.minima.append(found)
-        self.minima.sort(key=rank)
+        self.minima = sorted(self.minima, key=rank)  # a new list, as other threads look at the first
 
 
 def _done(worker: Worker, watch: Watch) -> Worker:
@@ -311,7 +323,8 @@ def _length(measures: Measures) -> float:
 
 
 def _alike(one: Radii, other: Radii) -> bool:
-    return bool((abs(one - other) < SAME_RADII * other).all())
+    # A flat curve has a radius of 0.
+    return bool((abs(one - other) <= SAME_RADII * np.maximum(other, other.max() / 10)).all())
 
 
 def _plain(value: Any) -> Any:

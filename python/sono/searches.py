@@ -7,6 +7,7 @@ import os
 import re
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
@@ -27,24 +28,36 @@ from sono.batch import (
 )
 from sono.formats import FormatError, VertexFile
 from sono.invariants import fingerprint
-from sono.pipeline import Curve, Stopped, forces, measure
-from sono.search import FINE_EDGE, Minimum, Search, Source, finish, rank
+from sono.pipeline import Stopped, forces, measure
+from sono.search import FINE_EDGE, SAME_LENGTH, Minimum, Search, Shape, Source, finish, rank
+from sono.tables import Row
 from sono.workers import Workers
 
 ENDLESS = 10**6
 """Trials of a search that a time limit ends."""
 
+SAME_ROPE = 1e-8
+"""Relative difference in L_a up to which ropes of the same edges are one, found again."""
+
+SAME_EDGES = 0.02
+"""Relative difference of edge lengths up to which ropes are compared by their L_a alone."""
+
 Show = Callable[[float, str], None]
+
+_SEARCHED = re.compile(
+    r"^# searched: variant (\d+), seed (\d+), met in (\d+) of (\d+) trials, (\d+) s$", re.MULTILINE
+)
 
 
 @dataclass(frozen=True)
 class SearchJob:
     """Search the knot that `source` names, or the curve in that file, for its shortest tight rope.
 
-    The search ends after so many `trials` or, begun trials included, after `time_limit` seconds. The shortest
-    minimum is written to `output` whenever a shorter one is found; in the end the `minima` shortest are
-    polished with edges `dl` long, in radii. `checkpoint` is the file that keeps the state of the search; with
-    `resume` it goes on from there, and an output whose search was finished is kept.
+    The search ends after so many `trials`, or begins no further round of them after `time_limit` seconds. The
+    shortest minimum is written to `output` whenever a shorter one is found; in the end the `minima` shortest
+    are polished with edges `dl` long, in radii. `checkpoint` is the file that keeps the state of the search;
+    with `resume` it goes on from there, an output whose search was finished is kept, and any other is only
+    replaced by a better one.
     """
 
     source: str
@@ -67,31 +80,21 @@ class SearchJob:
     def results(self, show: Show) -> Iterator[Result]:
         """Do the job; `show` is told how far it is, from 0 to 1, and what it does; it may raise `Stopped`."""
         try:
-            if self.resume and os.path.isfile(self.output) and (kept := self._kept()):
-                yield kept
-                return
             yield from _Hunt(self, sources.read(self.source), show).results()
         except FormatError as error:
             yield Result(None, str(error))
-        except ValueError as error:  # of a start that cannot be drawn, or an invariant not be computed
+        except ValueError as error:  # of a curve that cannot be measured
             yield Result(None, f"{self.name}: {error}")
 
-    def _kept(self) -> Result | None:
-        """Give the row of an output that is there from an earlier, finished search."""
-        work = re.search(
-            r"^# searched: .* in (\d+) of (\d+) trials, (\d+) s$", formats.load(self.output)[1], re.MULTILINE
-        )
-        if not work:
-            return None
-        hits, trials, seconds = map(int, work.groups())
-        if trials < (self.trials or ENDLESS) and seconds < (self.time_limit or float("inf")):
-            return None
-        file, measures = measured(self.output)
-        residual = forces(file.components).residual
-        if not says_tight(self.output) or residual > KEPT_RESIDUAL:
-            return None
-        more = {"status": TIGHT, "residual": residual, "hits": hits, "trials": trials}
-        return Result(as_row(self.name, self.output, measures, **more))
+
+@dataclass(frozen=True)
+class _Earlier:
+    """A tight rope that an earlier search has left in the output."""
+
+    row: Row
+    seed: int
+    trials: int
+    seconds: int
 
 
 class _Hunt:
@@ -101,31 +104,79 @@ class _Hunt:
         """Begin, or go on from the checkpoint. Raises `FormatError`."""
         self.job = job
         self.show = show
-        name = job.source if sources.is_name(job.source) else None
+        self.over = False
+        self.named = job.source if sources.is_name(job.source) else None
         measure(file.components)  # refuses a curve that crosses itself
-        self.source = Source.of(file.components, name)
+        self.source = Source.of(file.components, self.named)
         self.search = Search(job.seed)
         self.seconds = 0.0
         self.restore()
         self.begun = time.monotonic() - self.seconds
-        self.delivered: tuple[Curve, str] | None = None
+        self.delivered: tuple[Minimum, str] | None = None
+        self.earlier = self.left_earlier() if job.resume else None
 
     def results(self) -> Iterator[Result]:
         """Search, and give a row for each of the shortest minima at the end."""
-        search, job = self.search, self.job
+        search, job, earlier = self.search, self.job, self.earlier
+        if earlier and earlier.seed == job.seed and self.is_near(earlier, job.dl) and self.is_enough(earlier):
+            yield Result(earlier.row)
+            return
+        # At once, so that a checkpoint that cannot be written is noticed before hours are spent.
+        self.save()
         stopped = None
         try:
             rounds = takewhile(self.time_is_left, search.rounds(job.trials or ENDLESS))
             for _ in search.run(self.source, rounds, self.submit):
-                self.save()
-                self.deliver(search.minima[:1], STOPPED)
+                if not is_stream(job.output):
+                    self.deliver(search.minima[:1], STOPPED)
+                with suppress(FormatError):  # a full disk may have room again before the search ends
+                    self.save()
             minima = self.finished(search.minima[: job.minima])
         except Stopped as why:
-            stopped, minima = str(why), search.minima[: job.minima]
+            stopped = str(why)
+            minima = search.minima[: job.minima] or [_unrefined(shape) for shape in search.shapes[:1]]
+        finally:
+            self.over = True
         self.deliver(minima[:1], STOPPED if stopped else None)
-        for place, minimum in enumerate(minima):
-            yield self.row(minimum, stopped, None if place else job.output)
-        yield from self.troubles(stopped)
+        yield from self.rows(minima, stopped)
+        yield from self.troubles(minima, stopped)
+
+    def left_earlier(self) -> _Earlier | None:
+        """Return what an earlier search has left, if it is a tight rope of this knot."""
+        output = self.job.output
+        if not os.path.isfile(output):
+            return None
+        work = _SEARCHED.search(formats.load(output)[1])
+        if not (work and says_tight(output)):
+            return None
+        file, measures = measured(output)
+        residual = forces(file.components).residual
+        if residual > KEPT_RESIDUAL or fingerprint(file.components) != self.source.type:
+            return None
+        variant, seed, hits, trials, seconds = map(int, work.groups())
+        more = {"residual": residual, "variant": variant, "hits": hits, "trials": trials}
+        row = as_row(self.job.name, output, measures, status=TIGHT, **more)
+        return _Earlier(row, seed, trials, seconds)
+
+    def is_enough(self, earlier: _Earlier) -> bool:
+        """Tell whether the earlier search did what this one is to do."""
+        trials, seconds = self.job.trials or ENDLESS, self.job.time_limit or math.inf
+        return earlier.trials >= trials or earlier.seconds >= seconds
+
+    def is_near(self, earlier: _Earlier, dl: float) -> bool:
+        """Tell whether an earlier rope has edges of about this length."""
+        return abs(float(earlier.row["dl"] or 0) - dl) <= SAME_EDGES * dl
+
+    def is_worse(self, minimum: Minimum) -> bool:
+        """Tell whether the rope that is in the output is to stay there."""
+        if not self.earlier:
+            return False
+        length = float(self.earlier.row["l_a"] or math.inf)
+        if self.is_near(self.earlier, measure(minimum.curve).dl):
+            return minimum.length > length * (1 + SAME_ROPE)
+        # With finer edges L_a is a little more; only another minimum differs by so much.
+        finer = measure(minimum.curve).dl < float(self.earlier.row["dl"] or 0)
+        return minimum.length >= length * (1 + SAME_LENGTH * (1 if finer else -1))
 
     def finished(self, minima: list[Minimum]) -> list[Minimum]:
         """Polish minima with the edges that were asked for; return them with the shortest first."""
@@ -141,6 +192,8 @@ class _Hunt:
 
     def look(self) -> None:
         """Show the search, and stop it when it is time to."""
+        if self.over:
+            raise Stopped("the search is over")
         search, job = self.search, self.job
         parts = [search.trials / job.trials] if job.trials else []
         parts += [self.now() / job.time_limit] if job.time_limit else []
@@ -156,15 +209,16 @@ class _Hunt:
         return self.now() < (self.job.time_limit or math.inf)
 
     def deliver(self, best: list[Minimum], status: str | None) -> None:
-        """Write the shortest minimum if it is another one than before. Raises `FormatError`."""
+        """Write the shortest minimum, unless it is written or the output has a better rope.
+
+        Raises `FormatError`.
+        """
         for minimum in best:
             status = status or _status(minimum)
-            if self.delivered and self.delivered[0] is minimum.curve and self.delivered[1] == status:
+            if self.delivered == (minimum, status) or self.is_worse(minimum):
                 continue
             if fingerprint(minimum.curve) != self.source.type:
-                raise FormatError(
-                    f"{self.job.name}: the shortest rope is of another knot type; nothing is written"
-                )
+                raise FormatError(f"{self.job.name}: its shortest rope is of another knot type; not written")
             comments = [
                 *title(self.job.name, status, measure(minimum.curve)),
                 f"searched: variant {minimum.variant}, seed {self.search.seed}, met in {minimum.hits} of "
@@ -172,37 +226,47 @@ class _Hunt:
                 f"residual {minimum.residual:.1e}",
             ]
             formats.write(self.job.output, minimum.curve, comments)
-            self.delivered = minimum.curve, status
+            self.earlier, self.delivered = None, (minimum, status)
 
-    def row(self, minimum: Minimum, stopped: str | None, output: str | None) -> Result:
+    def rows(self, minima: list[Minimum], stopped: str | None) -> Iterator[Result]:
+        """Give a row for what is in the output, and for each of the other minima."""
+        if self.earlier:
+            yield Result(self.earlier.row)
+        for minimum in minima:
+            yield Result(self.row(minimum, stopped))
+
+    def row(self, minimum: Minimum, stopped: str | None) -> Row:
         """Give the row of a minimum."""
-        to_file = output is not None and not is_stream(output)
-        measures = measured(output)[1] if output and to_file else measure(minimum.curve)
+        output = self.job.output if self.delivered and self.delivered[0] is minimum else None
+        measures = measured(output)[1] if output and not is_stream(output) else measure(minimum.curve)
         work = {key: getattr(minimum, key) for key in ("residual", "hits", "variant")}
         more = work | {"trials": self.search.trials, "seconds": self.now()}
         status = STOPPED if stopped else _status(minimum)
-        trouble = f"{self.job.name}: n = {measures.n} did not get tight" if status == STUCK else None
-        return Result(as_row(self.job.name, output, measures, status=status, **more), trouble)
+        return as_row(self.job.name, output, measures, status=status, **more)
 
-    def troubles(self, stopped: str | None) -> Iterator[Result]:
+    def troubles(self, minima: list[Minimum], stopped: str | None) -> Iterator[Result]:
         """Tell what else the user should hear."""
         search, name = self.search, self.job.name
+        unsaved = None
+        try:
+            self.save()
+        except FormatError as error:
+            unsaved = str(error)
         if stopped:
-            place = (
-                f"the best of {search.trials} trials is in {self.job.output}"
-                if search.minima
-                else "no rope yet"
-            )
-            way_on = "; --resume goes on from here" if self.job.checkpoint else ""
+            place = f"the best of {search.trials} trials is in {self.job.output}" if minima else "no rope yet"
+            way_on = "; --resume goes on from here" if self.job.checkpoint and not unsaved else ""
             yield Result(None, f"{name}: {stopped}; {place}{way_on}")
-        elif not search.minima:
+        elif not minima:
             yield Result(None, f"{name}: none of {search.trials} trials could be tightened")
+        elif not minima[0].tight:
+            yield Result(None, f"{name}: its shortest rope did not get tight")
+        if unsaved:
+            yield Result(None, f"{name}: {unsaved}")
         if search.changed:
             yield Result(None, f"{name}: {search.changed} trials changed their knot type and were dropped")
-        if search.failed and search.minima:
-            yield Result(
-                None, note=f"{name}: {search.failed} of {search.trials} starts could not be tightened"
-            )
+        if search.failed and minima:
+            note = f"{name}: {search.failed} of {search.trials} starts could not be tightened"
+            yield Result(None, note=note)
 
     def restore(self) -> None:
         """Take the search up where the checkpoint has it."""
@@ -227,10 +291,19 @@ class _Hunt:
 
     def identity(self) -> list[str]:
         """Return what must be the same for a checkpoint to be continued."""
+        if self.named:
+            return [self.named, str(self.job.seed)]
         digest = hashlib.sha256()
         for component in self.source.curve:
             digest.update(component.tobytes() + b"end of component")
         return [digest.hexdigest(), str(self.job.seed)]
+
+
+def _unrefined(shape: Shape) -> Minimum:
+    """Return a shape as the best there is of a search that was stopped early."""
+    assert shape.curve is not None
+    residual = forces(shape.curve).residual
+    return Minimum(shape.variant, shape.length, False, residual, shape.curve, [shape.radii], shape.hits)
 
 
 def _status(minimum: Minimum) -> str:

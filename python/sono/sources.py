@@ -10,7 +10,8 @@ from sono.formats import FormatError, VertexFile
 
 def is_name(source: str) -> bool:
     """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
-    return source != "-" and not os.path.exists(source) and not set("./\\") & set(source)
+    is_file = os.path.exists(source) and not os.path.isdir(source)
+    return source != "-" and not is_file and not set("./\\") & set(source)
 
 
 def read(source: str) -> VertexFile:

@@ -256,6 +256,8 @@ def _of_json(name: str, number: int, line: str) -> Row:
         row = json.loads(line)
     except ValueError as error:
         raise FormatError.at(name, number, f"is no JSON: {error}") from error
+    if not (isinstance(row, dict) and "knot" in row):
+        raise FormatError.at(name, number, "has no knot; give a table that sono wrote as tsv, csv or json")
     return {key: value for key, value in row.items() if key in COLUMNS}
 
 

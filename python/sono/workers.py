@@ -17,9 +17,6 @@ POLL = 0.2
 PATIENCE = 10
 """Seconds to wait for a scheduler to answer."""
 
-RETRIES = 5
-"""How often a task is begun anew whose worker was lost."""
-
 
 class Workers(Protocol):
     """Do functions elsewhere."""
@@ -61,7 +58,8 @@ class Threads:
 class Cluster:
     """The workers of a Dask scheduler, each of which needs this version of sono.
 
-    A task whose worker is lost is done again by another one.
+    A task whose worker is lost is done again by another one, up to three times unless the scheduler is
+    configured otherwise (`distributed.scheduler.allowed-failures`).
     """
 
     def __init__(self, address: str) -> None:
@@ -81,7 +79,7 @@ class Cluster:
         self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
     ) -> Callable[[], Result]:
         """Begin a function on some worker."""
-        future = self.client.submit(function, *args, pure=False, retries=RETRIES)
+        future = self.client.submit(function, *args, pure=False)
 
         def wait() -> Result:
             try:

@@ -63,7 +63,7 @@ const LONGEST_WAY: f64 = 0.1;
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
 const UNEQUAL: f64 = 0.1;
 /// Iterations in which a rope gets tight or never does.
-const MOST_ITERATIONS: u64 = 3000;
+const MOST_ITERATIONS: u64 = 1000;
 /// A rope that cannot move begins anew with so many times its first mu, so often.
 const MORE_ROOM: f64 = 10.;
 const MOST_RESTARTS: u32 = 3;

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +30,11 @@ COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference",
 )
 @click.option("--update", is_flag=True, help="Search for shorter ropes, and take them in.")
 @click.option(
-    "--trials", type=click.IntRange(1), default=64, show_default=True, help="Starts to try for each knot."
+    "--trials",
+    type=click.IntRange(1, 10**6),
+    default=64,
+    show_default=True,
+    help="Starts to try for each knot.",
 )
 @click.option("--seed", type=click.IntRange(0, 10**6), default=0, help="Other starts.  [default: 0]")
 @options.parallel("Trials made at the same time.")
@@ -69,6 +73,8 @@ def command(
     from sono.searches import SearchJob
 
     atlas = Atlas(Path(folder))
+    if "-" in sources:
+        raise click.UsageError("standard input has no name; give a file NAME.txt")
     names = sources or [row["knot"] for row in library.table("knots")]
     with options.workers(jobs, cluster) as workers:
         work = [
@@ -82,18 +88,21 @@ def command(
                     workers,
                     trials,
                     seed=seed,
+                    minima=1,
                     checkpoint=Path(checkpoint, f"{source}.s{seed}.json"),
                     resume=True,
                 )
-                if update and not Path(source).exists()
+                if update and not Path(source).is_file()
                 else None,
-                source if Path(source).exists() else None,
+                source if Path(source).is_file() else None,
             )
             for source in names
         ]
         if any(job.file for job in work) and not update:
             raise click.UsageError("give --update to take ropes from files into the atlas")
-        options.prepare([path for job in work if job.search for path in job.search.files()], [], False)
+        paths = [path for job in work if job.search for path in job.search.files()]
+        paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
+        options.prepare(paths, [], False)
         sys.exit(Batch(options.writer(format_, columns), quiet).run(work, workers.count))
 
 
@@ -108,21 +117,21 @@ class _AtlasJob:
 
     def results(self, show: Show) -> "Iterator[Result]":
         """Do it."""
-        from sono.batch import Result
-        from sono.formats import FormatError
+        from sono.batch import TIGHT, Result
+        from sono.pipeline import Stopped
 
+        file = self.file
+        if self.search:
+            for result in self.search.results(show):
+                yield replace(result, row=None)
+                if result.row and result.row["status"] == TIGHT:
+                    file = self.search.output
+            if not file:
+                return
         try:
-            file = self.file
-            if self.search:
-                for result in self.search.results(show):
-                    if result.trouble:
-                        yield Result(None, result.trouble)
-                        return
-                file = self.search.output
-            row = self.atlas.take(self.name, file) if file else self.atlas.checked(self.name)
-        except FormatError as error:
+            taken = self.atlas.take(self.name, file, lambda: show(1, "polish")) if file else None
+            yield Result(taken or self.atlas.checked(self.name))
+        except ValueError as error:  # FormatError, or another knot type
             yield Result(None, str(error))
-        except ValueError as error:
-            yield Result(None, str(error))
-        else:
-            yield Result(row)
+        except Stopped as why:
+            yield Result(None, f"{self.name}: {why}; not taken into the atlas")

@@ -43,7 +43,7 @@ def command(
             for row in (row for source in sources for row in tables.read(source)):
                 beside = published.beside(row, bounds)
                 table.row(beside)
-                total += "published" in beside
+                total += beside["published"] is not None
                 for key in count:
                     difference = beside.get(key)
                     count[key] += isinstance(difference, float) and difference <= 0

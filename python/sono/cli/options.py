@@ -50,7 +50,10 @@ def knots(function: Function) -> Function:
         sources = [*arguments, *(_listed(list_file) if list_file else [])]
         if not sources:
             raise click.UsageError("give a FILE or the NAME of a knot, or a --list of them")
-        return function(sources=sources[shard] if shard else sources, **more)
+        if not sources[shard or slice(None)]:
+            complain("nothing to do: there are fewer knots than shards")
+            return None
+        return function(sources=sources[shard or slice(None)], **more)
 
     return cast("Function", command)
 
@@ -63,7 +66,7 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> sli
 
 
 def _listed(path: str) -> list[str]:
-    with click.open_file(path, encoding="utf-8") as lines:
+    with click.open_file(path, encoding="utf-8", errors="surrogateescape") as lines:
         words = (line.split("#")[0].strip() for line in lines)
         return [word for word in words if word]
 

@@ -62,7 +62,7 @@ class Batch:
                 return
             task = self.bar.add_task(job.name, total=1, what="")
         try:
-            for result in job.results(lambda done, what: self.watch(task, done, what)):
+            for result in _guarded(job, lambda done, what: self.watch(task, done, what)):
                 with self.lock, self.bar_hidden():
                     self.show(result)
         except BaseException:
@@ -120,6 +120,17 @@ class Batch:
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
+
+
+def _guarded(job: Job, show: Show) -> "Iterator[Result]":
+    """Give a job's results; what nobody expected, such as a lost cluster, ends this job alone."""
+    from sono.batch import Result
+
+    try:
+        yield from job.results(show)
+    except Exception as error:
+        kind = type(error).__name__
+        yield Result(None, f"{job.name}: unexpected {kind}: {error}; please report it if sono is to blame")
 
 
 def _wait(futures: "list[Future[None]]") -> None:

@@ -17,13 +17,13 @@ COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
 @click.command("search")
 @options.knots
 @click.option(
-    "--trials", type=click.IntRange(1), help="Starts to try.  [default: 64, or until the time limit]"
+    "--trials", type=click.IntRange(1, 10**6), help="Starts to try.  [default: 64, or until the time limit]"
 )
 @click.option(
     "--time-limit",
     type=click.FloatRange(0, min_open=True),
     metavar="SECONDS",
-    help="Begin no trial of a knot after this time.",
+    help="Begin no further round of trials of a knot after this time.",
 )
 @click.option(
     "--dl",
