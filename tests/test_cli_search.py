@@ -160,3 +160,69 @@ def test_tighten_takes_names_too(folder: Path, sono: Sono) -> None:
     assert result.exit_code == 0
     assert [row["knot"] for row in rows(result.stdout)] == ["m3_1"]
     assert library.start("m3_1")
+
+
+def test_a_finished_file_of_another_knot_or_edge_length_is_not_kept(folder: Path, sono: Sono) -> None:
+    sono("search", "3_1", *ONE)
+    finer = rows(sono("search", "3_1", *ONE, "--resume", "--dl", "0.1").stdout)
+    assert measure(formats.read("3_1.tight.txt").components).n == finer[0]["n"] == 327
+    other = sono("search", "4_1", *ONE, "-o", "3_1.tight.txt", "--resume")
+    assert float(rows(other.stdout)[0]["l_a"] or 0) > 42
+
+
+def test_a_better_rope_is_not_overwritten(folder: Path, sono: Sono) -> None:
+    best = rows(sono("search", "6_1", "--trials", "8", "--minima", "1").stdout)[0]
+    assert float(best["l_a"] or 0) < 56.71
+    before = (folder / "6_1.tight.txt").read_text()
+    # The braid alone, variant 0, ends 1.6 % longer.
+    search.SEED_STRIDE, stride = 0, search.SEED_STRIDE
+    try:
+        again = rows(sono("search", "6_1", "--trials", "1", "--seed", "1", "--resume").stdout)
+    finally:
+        search.SEED_STRIDE = stride
+    assert (folder / "6_1.tight.txt").read_text() == before
+    assert again[0]["l_a"] == best["l_a"]
+    assert float(again[1]["l_a"] or 0) > 57.5
+
+
+def test_standard_output_gets_one_curve(folder: Path, sono: Sono) -> None:
+    result = sono("search", "3_1", "--trials", "10", "-o", "-", "-q")
+    (folder / "out.txt").write_text(result.stdout)
+    assert measure(formats.read("out.txt").components).n == 164
+
+
+def test_what_nobody_expected_stays_with_its_knot(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("lost")
+
+    monkeypatch.setattr("sono.searches.finish", broken)
+    result = sono("search", "3_1", "Hopf", *ONE, "--dl", "0.1")
+    assert result.exit_code == 1
+    assert result.stderr.count("unexpected RuntimeError: lost") == 2
+    assert sorted(os.listdir()) == ["3_1.tight.txt", "3_1.txt", "Hopf.tight.txt", "Hopf.txt"]
+
+
+def test_a_full_disk_under_the_checkpoint_loses_no_rope(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = formats.save
+
+    def full(target: str, content: str) -> None:
+        if target.endswith("search.json") and '"trials": 0' not in content:
+            raise formats.FormatError(f"{target}: cannot be written: No space left on device")
+        write(target, content)
+
+    monkeypatch.setattr(formats, "save", full)
+    result = sono("search", "3_1", *ONE, "--checkpoint", "kept")
+    assert result.exit_code == 1
+    assert "No space left on device" in result.stderr
+    assert rows(result.stdout)[0]["status"] == "tight"
+    assert (folder / "3_1.tight.txt").exists()
+
+
+def test_an_empty_shard_has_nothing_to_do(sono: Sono) -> None:
+    result = sono("tighten", "3_1", "--shard", "2/2", "-o", "one.txt")
+    assert result.exit_code == 0
+    assert "fewer knots than shards" in result.stderr
