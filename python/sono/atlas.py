@@ -38,7 +38,7 @@ COLUMNS = (
     *("published", "source", "l_a_difference", "l_c_difference", "seed", "variant", "type"),
 )
 
-_ORIGIN = re.compile(r"^# searched: variant (\d+), seed (\d+)", re.MULTILINE)
+_ORIGIN = re.compile(r"^# searched: variant (-?\d+), seed (\d+)", re.MULTILINE)
 
 
 @dataclass(frozen=True)

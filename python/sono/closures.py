@@ -156,11 +156,11 @@ def grid(strokes: Strokes) -> Curve:
             corners += [(column, row, 0), (column, row, 1)]
             column = sum(columns[row]) - column
             corners.append((column, row, 1))
-        curve.append(_divided(2 * np.array(corners, float), 0.6))
+        curve.append(divided(2 * np.array(corners, float), 0.6))
     return curve
 
 
-def _divided(corners: NDArray[np.float64], longest: float) -> NDArray[np.float64]:
+def divided(corners: NDArray[np.float64], longest: float) -> NDArray[np.float64]:
     """Divide the edges of a polygon until none is longer than `longest`."""
     pieces = [
         np.linspace(begin, end, math.ceil(np.linalg.norm(end - begin) / longest), endpoint=False)

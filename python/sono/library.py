@@ -19,6 +19,7 @@ from functools import cache
 from importlib import resources
 
 from sono.closures import Curve, Strokes, braid, chain, grid, mirror, shuffled, torus
+from sono.planar import Diagram, lifted
 from sono.scramble import scramble
 
 # Those that are drawn best in another way than as the braids of the data file.
@@ -59,6 +60,12 @@ def names() -> list[str]:
     return [*dict.fromkeys([*_knots(), *_DRAWN])]
 
 
+def has_variants(name: str) -> bool:
+    """Tell whether further variants of this name are more than scrambles of the plain one."""
+    plain = re.sub("^m", "", name.strip(), flags=re.IGNORECASE)
+    return plain in _knots() or _KNOTINFO.fullmatch(plain) is not None
+
+
 def start(name: str, variant: int = 0) -> Curve:
     """Return a starting conformation of the knot called `name`, in units of about one rope radius.
 
@@ -67,18 +74,21 @@ def start(name: str, variant: int = 0) -> Curve:
     "1 -2 1 -2" of two generators or more; letter case and surrounding space do not matter.
 
     Variant 0 is a closed braid or a torus knot, ready to be tightened. Each further `variant` is another
-    conformation of the same type: random arc presentations of a knot in the tables, isotopic scrambles of
-    others. Raises ValueError, with the nearest known name, for anything else.
+    conformation of the same type. Those of a knot in the tables are random arc presentations, and the
+    negative ones random drawings of its planar diagram; those of other knots are isotopic scrambles. Raises
+    ValueError, with the nearest known name, for anything else.
     """
-    if variant < 0:
-        raise ValueError(f"variant = {variant}: variants count from 0")
     plain = name.strip()
     if plain[:1].casefold() == "m":
         return mirror(start(plain[1:], variant))
     plain = {known.casefold(): known for known in names()}.get(plain.casefold(), plain)
     row = _from_knotinfo(plain) if _KNOTINFO.fullmatch(plain) else _knots().get(plain)
-    if row and variant:
+    if row and variant > 0:
         return grid(shuffled(_strokes(row["grid"]), variant))
+    if row and variant < 0:
+        return lifted(_diagram(row["pd"]), -variant, -variant)
+    if variant < 0:
+        raise ValueError(f"variant = {variant}: only the knots of the tables have negative variants")
     curve = _drawn(_DRAWN.get(plain) or (row["braid"] if row else plain))
     return scramble(curve, variant) if variant else curve
 
@@ -105,6 +115,12 @@ def _strokes(text: str) -> Strokes:
     return [(int(low) - 1, int(high) - 1) for low, high in ends]
 
 
+def _diagram(text: str) -> Diagram:
+    """Read a planar diagram such as "1,5,2,4 3,1,4,6 5,3,6,2"."""
+    codes = (map(int, code.split(",")) for code in text.split())
+    return [(a, b, c, d) for a, b, c, d in codes]
+
+
 @cache  # its table takes a second to read
 def _from_knotinfo(name: str) -> dict[str, str]:
     """Return the row of a knot of 11 to 13 crossings. Raises ValueError if there is none, or no KnotInfo."""
@@ -122,4 +138,5 @@ def _from_knotinfo(name: str) -> dict[str, str]:
     points = json.loads(found["grid_notation"])
     columns = [[y for x, y in points if x == column] for column in range(1, len(points) // 2 + 1)]
     grid_text = " ".join(f"{low}-{high}" for low, high in columns)
-    return {"knot": name, "braid": word[0] if word else "", "grid": grid_text}
+    pd = " ".join(",".join(map(str, code)) for code in json.loads(found["pd_notation"]))
+    return {"knot": name, "braid": word[0] if word else "", "grid": grid_text, "pd": pd}

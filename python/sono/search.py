@@ -83,7 +83,7 @@ def unwatched() -> None:
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A knot to search: the starts of a `name`, or a `curve` and its scrambles; `type` is the knot's."""
+    """A knot to search: its `type`, a `curve` of it, and its `name` if the library has variants of that."""
 
     name: str | None
     curve: Curve
@@ -91,14 +91,19 @@ class Source:
 
     @classmethod
     def of(cls, curve: Curve, name: str | None = None) -> Self:
-        """Return the source of a curve, which has this name if it is a known start."""
-        return cls(name, curve, fingerprint(curve))
+        """Return the source of a curve, which is what the library draws if there is a name."""
+        return cls(name if name and library.has_variants(name) else None, curve, fingerprint(curve))
 
-    def start(self, variant: int) -> Curve:
-        """Return a starting conformation; variant 0 is the plain one."""
+    def start(self, variant: int, watch: Watch) -> Curve:
+        """Return a starting conformation; variant 0 is the curve itself.
+
+        A nameless curve is collapsed and then scrambled, which a long and thin one could not be.
+        """
         if not variant:
             return self.curve
-        return library.start(self.name, variant) if self.name else scramble(self.curve, variant)
+        if self.name:
+            return library.start(self.name, variant)
+        return scramble(_done(Tightener(self.curve, "collapse", 0, "{}"), watch).best(), variant)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,13 +142,13 @@ class Minimum:
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     """Make one trial. A start that cannot be drawn or tightened gives a shape without a curve."""
     try:
-        collapsed = _done(Tightener(source.start(variant), "collapse", 0, "{}"), watch)
+        collapsed = _done(Tightener(source.start(variant, watch), "collapse", 0, "{}"), watch)
         edge = _spread(*ANNEAL_EDGES, variant)
         n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
-        settings = json.dumps(ANNEAL | {"seed": variant})
+        settings = json.dumps(ANNEAL | {"seed": abs(variant)})
         annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
         n = round(annealed.status().best.l_p / TRIAL_EDGE)
-        polished = _done(Polish(annealed.best(), n, True, variant), watch)
+        polished = _done(Polish(annealed.best(), n, True, abs(variant)), watch)
     except ValueError:  # CurveError, or a curve that no scramble can be made of
         return Shape(variant)
     curve = polished.best()
@@ -256,8 +261,14 @@ class Search:
         return cls(**state | {"shapes": shapes, "minima": minima})
 
     def _tried(self, source: Source, submit: Submit, trials: range) -> list[Callable[[], Shape]]:
+        return [submit(attempt, source, self._variant(source, trial)) for trial in trials]
+
+    def _variant(self, source: Source, trial: int) -> int:
+        """Return the variant of a trial: 0, -1, 1, -2, 2, ... of knots with both kinds, else 0, 1, 2, ..."""
         first = self.seed * SEED_STRIDE
-        return [submit(attempt, source, first + trial) for trial in trials]
+        if not source.name:
+            return first + trial
+        return -(first + trial // 2 + 1) if trial % 2 else first + trial // 2
 
     def _refined(self, submit: Submit, most: int) -> list[Refining]:
         """Begin to refine the shortest shapes; they stay in the list until they are done."""

@@ -45,7 +45,7 @@ SAME_EDGES = 0.02
 Show = Callable[[float, str], None]
 
 _SEARCHED = re.compile(
-    r"^# searched: variant (\d+), seed (\d+), met in (\d+) of (\d+) trials, (\d+) s$", re.MULTILINE
+    r"^# searched: variant (-?\d+), seed (\d+), met in (\d+) of (\d+) trials, (\d+) s$", re.MULTILINE
 )
 
 

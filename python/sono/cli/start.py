@@ -10,10 +10,10 @@ import click
 @click.option("--braid", "word", metavar="WORD", help='Closure of a braid word such as "1 -2 1 -2".')
 @click.option(
     "--variant",
-    type=click.IntRange(0),
+    type=int,
     default=0,
     show_default=True,
-    help="Another conformation of the same type for each K.",
+    help="Another conformation of the same type for each K; negative ones are drawn from a planar diagram.",
     metavar="K",
 )
 @click.option(

@@ -1,0 +1,120 @@
+"""Knots drawn from a planar diagram: in the plane by the method of Tutte, then lifted at the crossings.
+
+The diagram is a plane graph of crossings and middles of edges. With a point amid each face but the outer one
+it is a triangulation; once the outer face is fixed on a circle, every point is put into the weighted mean of
+its neighbours, and no two lines cross, whatever the weights (W. Tutte, "How to draw a graph", Proc. London
+Math. Soc. 13 (1963) 743; M. Floater, Comput. Aided Geom. Design 14 (1997) 231). Another outer face gives
+another conformation: strands that ran inside now run round all others.
+"""
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sono.closures import Curve, divided
+
+Diagram: TypeAlias = list[tuple[int, int, int, int]]
+"""A PD code: for each crossing its four edges, from 1, counter-clockwise from the incoming lower one."""
+
+Corner: TypeAlias = tuple[int, int]
+"""A crossing, and which of its four slots."""
+
+ROUNDS = 12
+"""Rounds in which long lines get more weight; the drawing with the most even lines is taken."""
+
+PULL = 0.3
+"""The power of its length by which a line's weight grows in a round."""
+
+
+def lifted(diagram: Diagram, outer: int, seed: int) -> Curve:
+    """Return the knot of a planar diagram without nugatory crossings, its `outer` face chosen by number.
+
+    The seed draws the first weights. The shortest line is as long as a rope of radius 1 needs.
+    """
+    faces = _faces(diagram)
+    lines, boundary = _triangulated(diagram, faces, outer % len(faces))
+    points = _drawn(lines, boundary, np.random.default_rng(seed))
+    points *= 2 / np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1).min()
+    corners = []
+    for edge in range(1, 2 * len(diagram) + 1):
+        crossing = _left_by(diagram, edge)
+        z = -1 if diagram[crossing][0] == edge else 1
+        corners += [[*points[len(diagram) + edge - 1], 0], [*points[crossing], z]]
+    return [divided(np.array(corners, float), 0.6)]
+
+
+def _left_by(diagram: Diagram, edge: int) -> int:
+    """Return the crossing that an edge leads to: where the slot across is that of the next edge."""
+    after = edge % (2 * len(diagram)) + 1
+    for crossing, slots in enumerate(diagram):
+        if any((slots[k], slots[k - 2]) == (edge, after) for k in range(4)):
+            return crossing
+    raise ValueError(f"a planar diagram in which edge {edge} does not lead on to {after}")
+
+
+def _faces(diagram: Diagram) -> list[list[Corner]]:
+    """Return the corners round each face, those of the largest face first."""
+    ends: dict[int, list[Corner]] = {}
+    for crossing, slots in enumerate(diagram):
+        for slot, edge in enumerate(slots):
+            ends.setdefault(edge, []).append((crossing, slot))
+    unseen = {corner for both in ends.values() for corner in both}
+    faces = []
+    while unseen:
+        corner = min(unseen)
+        face = []
+        while corner in unseen:
+            unseen.remove(corner)
+            face.append(corner)
+            # Along the edge in this slot to its other end; the face goes on at the slot clockwise from there.
+            one, other = ends[diagram[corner[0]][corner[1]]]
+            crossing, slot = other if corner == one else one
+            corner = crossing, (slot - 1) % 4
+        faces.append(face)
+    return sorted(faces, key=len, reverse=True)
+
+
+def _triangulated(
+    diagram: Diagram, faces: Sequence[Sequence[Corner]], outer: int
+) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    """Return the lines (m, 2) of the triangulation, and the points round the outer face, clockwise.
+
+    Points are the crossings, then the middles of edges, then those amid faces.
+    """
+    crossings = len(diagram)
+    lines = [(x, crossings + edge - 1) for x, slots in enumerate(diagram) for edge in slots]
+    boundary: list[int] = []
+    for number, face in enumerate(faces):
+        around = [point for x, slot in face for point in (x, crossings + diagram[x][slot] - 1)]
+        if number == outer:
+            boundary = around
+        else:
+            lines += [(3 * crossings + number - (number > outer), point) for point in around]
+    return np.array(lines), np.array(boundary[::-1])
+
+
+def _drawn(
+    lines: NDArray[np.int_], boundary: NDArray[np.int_], random: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return the points (n, 2) of the drawing in which the longest line is least in terms of the shortest."""
+    count = lines.max() + 1
+    angle = 2 * np.pi * np.arange(len(boundary)) / len(boundary)
+    points = np.zeros((count, 2))
+    points[boundary] = np.column_stack([np.cos(angle), np.sin(angle)])
+    free = np.setdiff1d(np.arange(count), boundary)
+    weights = np.exp(random.normal(scale=0.5, size=len(lines)))
+    best, least = points, np.inf
+    for _ in range(ROUNDS):
+        form = np.zeros((count, count))
+        for one, other in (lines.T, lines.T[::-1]):
+            np.add.at(form, (one, one), weights)
+            np.add.at(form, (one, other), -weights)
+        pull = -form[np.ix_(free, boundary)] @ points[boundary]
+        points[free] = np.linalg.solve(form[np.ix_(free, free)], pull)
+        lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
+        if lengths.max() < least * lengths.min():
+            best, least = points.copy(), lengths.max() / lengths.min()
+        weights *= (lengths / lengths.mean()) ** PULL
+    return best

@@ -1,0 +1,45 @@
+"""Knots lifted from planar diagrams: of the type of the diagram, whatever its outer face and weights."""
+
+import numpy as np
+import pytest
+
+from sono.invariants import crossings, fingerprint
+from sono.library import start
+from sono.planar import Diagram, lifted
+
+TREFOIL: Diagram = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
+FIGURE_EIGHT: Diagram = [(4, 2, 5, 1), (8, 6, 1, 5), (6, 3, 7, 4), (2, 7, 3, 8)]
+
+
+@pytest.mark.parametrize("outer", range(6))
+@pytest.mark.parametrize("seed", range(3))
+def test_the_type_is_that_of_the_diagram(outer: int, seed: int) -> None:
+    assert fingerprint(lifted(TREFOIL, outer, seed)) == fingerprint(start("3_1"))
+    assert fingerprint(lifted(FIGURE_EIGHT, outer, seed)) == fingerprint(start("4_1"))
+
+
+def test_seen_from_above_it_is_the_diagram() -> None:
+    curve = lifted(FIGURE_EIGHT, 0, 1)
+    found = crossings(curve, np.array([0.01, 0.02, 1.0]))
+    assert sorted(found.sign) == [-1, -1, 1, 1]
+
+
+def test_strands_are_apart() -> None:
+    (points,) = lifted(FIGURE_EIGHT, 0, 1)
+    edges = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+    assert edges.max() <= 0.6
+    place = np.cumsum(edges)
+    arc = abs(place[:, None] - place)
+    arc = np.minimum(arc, edges.sum() - arc)
+    distance = np.linalg.norm(points[:, None] - points, axis=2)
+    assert distance[arc > 4].min() > 0.5
+
+
+def test_outer_faces_and_seeds_differ() -> None:
+    drawn = {lifted(TREFOIL, outer, seed)[0].tobytes() for outer in range(5) for seed in range(3)}
+    assert len(drawn) == 15
+
+
+def test_no_diagram() -> None:
+    with pytest.raises(ValueError, match="edge 1 does not lead on to 2"):
+        lifted([(1, 4, 3, 5), (2, 6, 4, 1), (5, 2, 6, 3)], 0, 0)
