@@ -86,7 +86,7 @@ def start(name: str, variant: int = 0) -> Curve:
     if row and variant > 0:
         return grid(shuffled(_strokes(row["grid"]), variant))
     if row and variant < 0:
-        return lifted(_diagram(row["pd"]), -variant, -variant)
+        return lifted(_diagram(row["pd"]), -variant)
     if variant < 0:
         raise ValueError(f"variant = {variant}: only the knots of the tables have negative variants")
     curve = _drawn(_DRAWN.get(plain) or (row["braid"] if row else plain))

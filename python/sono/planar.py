@@ -24,19 +24,29 @@ Corner: TypeAlias = tuple[int, int]
 ROUNDS = 12
 """Rounds in which long lines get more weight; the drawing with the most even lines is taken."""
 
+UNEVEN = 25
+"""Ratio of the longest line to the shortest up to which a drawing is taken; a rope in others is thin."""
+
 PULL = 0.3
 """The power of its length by which a line's weight grows in a round."""
 
 
-def lifted(diagram: Diagram, outer: int, seed: int) -> Curve:
-    """Return the knot of a planar diagram without nugatory crossings, its `outer` face chosen by number.
+def lifted(diagram: Diagram, seed: int) -> Curve:
+    """Return the knot of a planar diagram without nugatory crossings.
 
-    The seed draws the first weights. The shortest line is as long as a rope of radius 1 needs.
+    The seed chooses the outer face and draws the first weights. The shortest line is 1 long, strands cross 2
+    apart, and the next face is taken instead of one that leaves the others too little room.
     """
     faces = _faces(diagram)
-    lines, boundary = _triangulated(diagram, faces, outer % len(faces))
-    points = _drawn(lines, boundary, np.random.default_rng(seed))
-    points *= 2 / np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1).min()
+    drawings = []
+    for outer in (np.arange(len(faces)) + seed) % len(faces):
+        lines, boundary = _triangulated(diagram, faces, int(outer))
+        points = _drawn(lines, boundary, np.random.default_rng(seed))
+        lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
+        drawings.append((lengths.max() / lengths.min(), points / lengths.min()))
+        if drawings[-1][0] < UNEVEN:
+            break
+    points = min(drawings, key=lambda drawing: drawing[0])[1]
     corners = []
     for edge in range(1, 2 * len(diagram) + 1):
         crossing = _left_by(diagram, edge)
