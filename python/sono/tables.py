@@ -14,9 +14,6 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Self, TextIO
 
-from sono.formats.files import load
-from sono.formats.vertices import FormatError
-
 Value = str | int | float | None
 Row = Mapping[str, Value]
 
@@ -239,37 +236,45 @@ def read(source: str) -> list[Row]:
 
     Raises `FormatError` naming file and line.
     """
+    from sono.formats import FormatError, load  # here, since numpy would make --help wait
+
     name, text = load(source)
     first, *_ = text.splitlines() or [""]
     if first.startswith("{"):
-        return [_of_json(name, number, line) for number, line in enumerate(text.splitlines(), 1) if line]
+        rows = []
+        for number, line in enumerate(text.splitlines(), 1):
+            try:
+                rows += [_of_json(line)] if line else []
+            except ValueError as error:
+                raise FormatError.at(name, number, str(error)) from error
+        return rows
     lines = csv.reader(io.StringIO(text), delimiter="\t" if "\t" in first else ",")
     keys = {column.header: key for key, column in COLUMNS.items()}
     header = [keys.get(cell, cell) for cell in next(lines, [])]
     if "knot" not in header:
         raise FormatError.at(name, 1, "has no column knot; give a table that sono wrote as tsv, csv or json")
-    return [_of_cells(name, lines.line_num, header, cells) for cells in lines]
+    try:
+        return [_of_cells(header, cells) for cells in lines]
+    except ValueError as error:
+        raise FormatError.at(name, lines.line_num, f"does not fit the header: {error}") from error
 
 
-def _of_json(name: str, number: int, line: str) -> Row:
+def _of_json(line: str) -> Row:
     try:
         row = json.loads(line)
     except ValueError as error:
-        raise FormatError.at(name, number, f"is no JSON: {error}") from error
+        raise ValueError(f"is no JSON: {error}") from error
     if not (isinstance(row, dict) and "knot" in row):
-        raise FormatError.at(name, number, "has no knot; give a table that sono wrote as tsv, csv or json")
+        raise ValueError("has no knot; give a table that sono wrote as tsv, csv or json")
     return {key: value for key, value in row.items() if key in COLUMNS}
 
 
-def _of_cells(name: str, number: int, header: Sequence[str], cells: Sequence[str]) -> Row:
-    try:
-        return {
-            key: None if cell == "-" else COLUMNS[key].kind(cell)
-            for key, cell in zip(header, cells, strict=True)
-            if key in COLUMNS
-        }
-    except ValueError as error:
-        raise FormatError.at(name, number, f"does not fit the header: {error}") from error
+def _of_cells(header: Sequence[str], cells: Sequence[str]) -> Row:
+    return {
+        key: None if cell == "-" else COLUMNS[key].kind(cell)
+        for key, cell in zip(header, cells, strict=True)
+        if key in COLUMNS
+    }
 
 
 def _rounded(row: Row, column: Column) -> str:

@@ -88,8 +88,10 @@ class Cluster:
                         result: Result = future.result(timeout=POLL)
                         return result
                     watch()
-            except BaseException:
+            except BaseException as error:
                 future.cancel()
+                if isinstance(error, OSError):
+                    raise RuntimeError(f"the cluster was lost: {error}") from error
                 raise
 
         return wait

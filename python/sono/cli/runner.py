@@ -128,6 +128,8 @@ def _guarded(job: Job, show: Show) -> "Iterator[Result]":
 
     try:
         yield from job.results(show)
+    except OSError:  # standard output is full or closed
+        raise
     except Exception as error:
         kind = type(error).__name__
         yield Result(None, f"{job.name}: unexpected {kind}: {error}; please report it if sono is to blame")
