@@ -20,7 +20,7 @@ from sono.batch import KEPT_RESIDUAL, TIGHT, measured, says_tight, title
 from sono.formats import FormatError
 from sono.invariants import Curve, fingerprint, homfly
 from sono.pipeline import forces, measure, tighten
-from sono.search import FINE_EDGE, Watch, unwatched
+from sono.search import FINE_EDGE, SHORTER, Watch, settled, unwatched
 from sono.searches import SAME_EDGES
 from sono.tables import Row, Value
 
@@ -29,9 +29,6 @@ FINEST_EDGE = 0.03
 
 DECIMALS = 10
 """Decimals of the coordinates in the atlas, which rounds lengths by less than the polish leaves open."""
-
-SHORTER = 1e-7
-"""A rope is shorter than another if its L_a is by so much, relatively."""
 
 COLUMNS = (
     *("knot", "n", "dl", "l_p", "l_c", "l_a", "residual", "n_fine", "l_c_fine"),
@@ -64,23 +61,33 @@ class Atlas:
         that cannot be read or written, `ValueError` for a rope that does not get tight, or of another type
         than its name says.
         """
-        origin = _ORIGIN.search(formats.load(file)[1])
         curve = self._fit(file, watch)
+        if not self._is_shorter(knot, curve):
+            row = self.rows().get(knot)
+            if row and self._is_current(row):
+                return row
+            file = self.path(knot)
+            curve = measured(file)[0].components
+        origin = _ORIGIN.search(formats.load(file)[1])
+        curve, fine = settled(curve, round(measure(curve).l_p / FINEST_EDGE), watch)
+        curve = _centred(curve)
+        confirmed_type(knot, curve)
         with self.lock:
-            length = measure(curve).l_a or math.inf
-            bound = (measured(self.path(knot))[1].l_a or 0) if os.path.exists(self.path(knot)) else math.inf
-            shorter = length < (1 - SHORTER) * bound
-            if shorter:
-                confirmed_type(knot, curve)
+            if self._is_shorter(knot, curve):
                 self._make()
                 searched = [f"searched: variant {origin[1]}, seed {origin[2]}"] if origin else []
                 formats.write(self.path(knot), curve, [*title(knot, TIGHT, measure(curve)), *searched])
-            row = self.rows().get(knot)
-        if row and not shorter and self._is_current(row):
-            return row
-        row = published.beside({**self.measured(knot), **self.finer(knot, watch)}, published.table())
+        finer = {"n_fine": fine.measures.n, "l_c_fine": fine.measures.l_c}
+        row = published.beside({**self.measured(knot), **finer}, published.table())
         self._write(row)
         return row
+
+    def _is_shorter(self, knot: str, curve: Curve) -> bool:
+        """Tell whether a rope is shorter than what there is. Raises `FormatError`."""
+        if not os.path.exists(self.path(knot)):
+            return True
+        length, bound = measure(curve).l_a or math.inf, measured(self.path(knot))[1].l_a or 0
+        return length < (1 - SHORTER) * bound
 
     def _make(self) -> None:
         """Make the folders. Raises `FormatError`."""
@@ -99,8 +106,7 @@ class Atlas:
             if not polished.converged:
                 raise ValueError(f"{file}: does not get tight with {polished.measures.n} vertices")
             components = polished.curve
-        centre = np.vstack(components).mean(axis=0)
-        return [(component - centre).round(DECIMALS) for component in components]
+        return _centred(components)
 
     def measured(self, knot: str) -> Row:
         """Return the row of a knot but for the finer level, its type confirmed.
@@ -126,13 +132,6 @@ class Atlas:
             raise ValueError(f"{knot}: its row is not that of its file; --update mends it")
         return {**row, "type": again["type"]}
 
-    def finer(self, knot: str, watch: Watch = unwatched) -> Row:
-        """Polish the rope of a knot on finer edges, for a lower L_c."""
-        file, m = measured(self.path(knot))
-        n = round(m.l_p / FINEST_EDGE)
-        fine = tighten(file.components, n, method="polish", watch=lambda _: watch()).measures
-        return {"n_fine": fine.n, "l_c_fine": fine.l_c}
-
     def _is_current(self, row: Row) -> bool:
         """Tell whether a row has the figures of its file."""
         m = measured(self.path(str(row["knot"])))[1]
@@ -147,6 +146,12 @@ class Atlas:
                 for knot in sorted(rows, key=_by_number):
                     table.row(rows[knot])
             formats.save(os.fspath(self.folder / "atlas.tsv"), text.getvalue())
+
+
+def _centred(curve: Curve) -> Curve:
+    """Return a rope round the origin, with as many decimals as its file has."""
+    centre = np.vstack(curve).mean(axis=0)
+    return [(component - centre).round(DECIMALS) for component in curve]
 
 
 def confirmed_type(knot: str, curve: Curve) -> str:

@@ -19,6 +19,7 @@ from functools import cache
 from importlib import resources
 
 from sono.closures import Curve, Strokes, braid, chain, grid, mirror, shuffled, torus
+from sono.flypes import flyped
 from sono.planar import Diagram, lifted
 from sono.scramble import scramble
 
@@ -75,7 +76,7 @@ def start(name: str, variant: int = 0) -> Curve:
 
     Variant 0 is a closed braid or a torus knot, ready to be tightened. Each further `variant` is another
     conformation of the same type. Those of a knot in the tables are random arc presentations, and the
-    negative ones random drawings of its planar diagram; those of other knots are isotopic scrambles. Raises
+    negative ones random drawings of planar diagrams; those of other knots are isotopic scrambles. Raises
     ValueError, with the nearest known name, for anything else.
     """
     plain = name.strip()
@@ -86,7 +87,7 @@ def start(name: str, variant: int = 0) -> Curve:
     if row and variant > 0:
         return grid(shuffled(_strokes(row["grid"]), variant))
     if row and variant < 0:
-        return lifted(_diagram(row["pd"]), -variant)
+        return lifted(flyped(_diagram(row["pd"]), -variant), -variant)
     if variant < 0:
         raise ValueError(f"variant = {variant}: only the knots of the tables have negative variants")
     curve = _drawn(_DRAWN.get(plain) or (row["braid"] if row else plain))

@@ -18,8 +18,8 @@ from sono.closures import Curve, divided
 Diagram: TypeAlias = list[tuple[int, int, int, int]]
 """A PD code: for each crossing its four edges, from 1, counter-clockwise from the incoming lower one."""
 
-Corner: TypeAlias = tuple[int, int]
-"""A crossing, and which of its four slots."""
+Slot: TypeAlias = tuple[int, int]
+"""A crossing, and the place of an edge among its four."""
 
 ROUNDS = 12
 """Rounds in which long lines get more weight; the drawing with the most even lines is taken."""
@@ -37,10 +37,10 @@ def lifted(diagram: Diagram, seed: int) -> Curve:
     The seed chooses the outer face and draws the first weights. The shortest line is 1 long, strands cross 2
     apart, and the next face is taken instead of one that leaves the others too little room.
     """
-    faces = _faces(diagram)
+    around = faces(diagram)
     drawings = []
-    for outer in (np.arange(len(faces)) + seed) % len(faces):
-        lines, boundary = _triangulated(diagram, faces, int(outer))
+    for outer in (np.arange(len(around)) + seed) % len(around):
+        lines, boundary = _triangulated(diagram, around, int(outer))
         points = _drawn(lines, boundary, np.random.default_rng(seed))
         lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
         drawings.append((lengths.max() / lengths.min(), points / lengths.min()))
@@ -64,30 +64,35 @@ def _left_by(diagram: Diagram, edge: int) -> int:
     raise ValueError(f"a planar diagram in which edge {edge} does not lead on to {after}")
 
 
-def _faces(diagram: Diagram) -> list[list[Corner]]:
-    """Return the corners round each face, those of the largest face first."""
-    ends: dict[int, list[Corner]] = {}
-    for crossing, slots in enumerate(diagram):
-        for slot, edge in enumerate(slots):
+def across(diagram: Diagram) -> dict[Slot, Slot]:
+    """Return the slot at the other end of the edge in each slot."""
+    ends: dict[int, list[Slot]] = {}
+    for crossing, edges in enumerate(diagram):
+        for slot, edge in enumerate(edges):
             ends.setdefault(edge, []).append((crossing, slot))
-    unseen = {corner for both in ends.values() for corner in both}
-    faces = []
+    return {slot: other for one, two in ends.values() for slot, other in ((one, two), (two, one))}
+
+
+def faces(diagram: Diagram) -> list[list[Slot]]:
+    """Return the slots from which edges have each face to their left, those of the largest face first."""
+    far = across(diagram)
+    unseen = set(far)
+    found = []
     while unseen:
-        corner = min(unseen)
+        slot = min(unseen)
         face = []
-        while corner in unseen:
-            unseen.remove(corner)
-            face.append(corner)
-            # Along the edge in this slot to its other end; the face goes on at the slot clockwise from there.
-            one, other = ends[diagram[corner[0]][corner[1]]]
-            crossing, slot = other if corner == one else one
-            corner = crossing, (slot - 1) % 4
-        faces.append(face)
-    return sorted(faces, key=len, reverse=True)
+        while slot in unseen:
+            unseen.remove(slot)
+            face.append(slot)
+            # Along the edge to its other end; the face goes on at the slot clockwise from there.
+            crossing, end = far[slot]
+            slot = crossing, (end - 1) % 4
+        found.append(face)
+    return sorted(found, key=len, reverse=True)
 
 
 def _triangulated(
-    diagram: Diagram, faces: Sequence[Sequence[Corner]], outer: int
+    diagram: Diagram, around: Sequence[Sequence[Slot]], outer: int
 ) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     """Return the lines (m, 2) of the triangulation, and the points round the outer face, clockwise.
 
@@ -96,12 +101,12 @@ def _triangulated(
     crossings = len(diagram)
     lines = [(x, crossings + edge - 1) for x, slots in enumerate(diagram) for edge in slots]
     boundary: list[int] = []
-    for number, face in enumerate(faces):
-        around = [point for x, slot in face for point in (x, crossings + diagram[x][slot] - 1)]
+    for number, face in enumerate(around):
+        circuit = [point for x, slot in face for point in (x, crossings + diagram[x][slot] - 1)]
         if number == outer:
-            boundary = around
+            boundary = circuit
         else:
-            lines += [(3 * crossings + number - (number > outer), point) for point in around]
+            lines += [(3 * crossings + number - (number > outer), point) for point in circuit]
     return np.array(lines), np.array(boundary[::-1])
 
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from sono import library
 from sono._core import CurveError, Measures, Polish, Tightener
 from sono.invariants import Fingerprint, fingerprint
-from sono.pipeline import HOT, SLICE, Curve, Run, as_curve
+from sono.pipeline import HOT, SLICE, Curve, Tight, as_curve, forces, measure, tighten
 from sono.scramble import scramble
 
 TRIAL_EDGE = 0.45
@@ -46,11 +46,17 @@ REFINED = 2
 FINALISTS = 4
 """Shapes that are refined after the last round."""
 
+SETTLED = 2
+"""Minima that settle on other edges at the end."""
+
 KEPT = 24
 """Unrefined shapes that are remembered."""
 
 SAME_RADII = 0.007
 """Relative difference of the radii of gyration up to which ropes of one edge length count as one shape."""
+
+SHORTER = 1e-7
+"""A rope is shorter than another of the same edges if its L_a is by so much, relatively."""
 
 SAME_LENGTH = 2e-4
 """Relative difference in L_a up to which two refined ropes of the same shape count as one minimum."""
@@ -178,8 +184,7 @@ def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
 
 def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum:
     """Polish a minimum on n vertices, doubling the vertices on the way there."""
-    run = Run(minimum.curve, [n], {}, "polish")
-    tight = run.tighten(lambda _: watch())
+    tight = _polished(minimum.curve, n, watch)
     assert tight.residual is not None
     return replace(
         minimum,
@@ -188,6 +193,31 @@ def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum:
         residual=tight.residual,
         curve=tight.curve,
     )
+
+
+def settle(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
+    """Let a minimum settle on edges of half the length."""
+    curve, _ = settled(minimum.curve, 2 * sum(map(len, minimum.curve)), watch)
+    if curve is minimum.curve:
+        return minimum
+    length, residual = _length(measure(curve)), forces(curve).residual
+    return replace(minimum, length=length, tight=True, residual=residual, curve=curve)
+
+
+def settled(curve: Curve, finer: int, watch: Watch = unwatched) -> tuple[Curve, Tight]:
+    """Polish a rope on `finer` vertices and then on its own number again, for as long as that shortens it.
+
+    Returns it on its own and on the finer ones. Beads lie in grooves between those that they touch; on finer
+    edges these are shallow, and a rope may leave one that held it up, by a thousandth of its length at most.
+    """
+    n = sum(map(len, curve))
+    while True:
+        fine = _polished(curve, finer, watch)
+        again = _polished(fine.curve, n, watch)
+        longest = (1 - SHORTER) * _length(measure(curve))
+        if not again.converged or _length(again.measures) >= longest:
+            return curve, fine
+        curve = again.curve
 
 
 def rank(minimum: Minimum) -> tuple[bool, float]:
@@ -222,6 +252,8 @@ class Search:
     def run(self, source: Source, rounds: Iterator[range], submit: Submit) -> Iterator[None]:
         """Make the trials of these `rounds`, pausing after each; then refine the best shapes that are left.
 
+        The best minima settle at the end.
+
         `submit` has functions of this module done elsewhere.
         """
         refining = self._refined(submit, REFINED if self.trials else 0)
@@ -237,6 +269,12 @@ class Search:
             trying = ahead
         self._keep(refining)
         self._keep(self._refined(submit, FINALISTS))
+        yield
+        settling = [submit(settle, minimum) for minimum in self.minima[:SETTLED]]
+        settled = [minimum() for minimum in settling]
+        self.minima = self.minima[SETTLED:]
+        for minimum in settled:
+            self._merge(minimum)
         yield
 
     def rounds(self, trials: int) -> Iterator[range]:
@@ -327,6 +365,11 @@ def _done(worker: Worker, watch: Watch) -> Worker:
 def _spread(least: float, most: float, number: int) -> float:
     """Spread numbers evenly over a range by multiples of the golden ratio."""
     return least + (most - least) * ((0.5 + number * (math.sqrt(5) - 1) / 2) % 1)
+
+
+def _polished(curve: Curve, n: int, watch: Watch) -> Tight:
+    """Polish a rope on n vertices."""
+    return tighten(curve, n, method="polish", watch=lambda _: watch())
 
 
 def _length(measures: Measures) -> float:
