@@ -19,8 +19,8 @@ from sono import formats, library, published, tables
 from sono.batch import KEPT_RESIDUAL, TIGHT, measured, says_tight, title
 from sono.formats import FormatError
 from sono.invariants import Curve, fingerprint, homfly
-from sono.pipeline import forces, measure, tighten
-from sono.search import FINE_EDGE, SHORTER, Watch, settled, unwatched
+from sono.pipeline import Tight, forces, measure, tighten
+from sono.search import FINE_EDGE, Watch, unwatched
 from sono.searches import SAME_EDGES
 from sono.tables import Row, Value
 
@@ -29,6 +29,9 @@ FINEST_EDGE = 0.03
 
 DECIMALS = 10
 """Decimals of the coordinates in the atlas, which rounds lengths by less than the polish leaves open."""
+
+SHORTER = 1e-7
+"""A rope is shorter than another if its L_a is by so much, relatively."""
 
 COLUMNS = (
     *("knot", "n", "dl", "l_p", "l_c", "l_a", "residual", "n_fine", "l_c_fine"),
@@ -69,8 +72,11 @@ class Atlas:
             file = self.path(knot)
             curve = measured(file)[0].components
         origin = _ORIGIN.search(formats.load(file)[1])
-        curve, fine = settled(curve, round(measure(curve).l_p / FINEST_EDGE), watch)
-        curve = _centred(curve)
+        fine = _polished(curve, FINEST_EDGE, watch)
+        # It may have left a groove of the beads that held it up.
+        again = _polished(fine.curve, FINE_EDGE, watch)
+        if again.converged and (again.measures.l_a or math.inf) < (measure(curve).l_a or math.inf):
+            curve = _centred(again.curve)
         confirmed_type(knot, curve)
         with self.lock:
             if self._is_shorter(knot, curve):
@@ -102,7 +108,7 @@ class Atlas:
         components = [component / m.r_s for component in curve.components]
         same_edges = abs(m.dl / m.r_s - FINE_EDGE) < SAME_EDGES * FINE_EDGE
         if not (same_edges and says_tight(file) and forces(components).residual <= KEPT_RESIDUAL):
-            polished = tighten(components, round(m.l_p / FINE_EDGE), method="polish", watch=lambda _: watch())
+            polished = _polished(components, FINE_EDGE, watch)
             if not polished.converged:
                 raise ValueError(f"{file}: does not get tight with {polished.measures.n} vertices")
             components = polished.curve
@@ -146,6 +152,12 @@ class Atlas:
                 for knot in sorted(rows, key=_by_number):
                     table.row(rows[knot])
             formats.save(os.fspath(self.folder / "atlas.tsv"), text.getvalue())
+
+
+def _polished(curve: Curve, edge: float, watch: Watch) -> Tight:
+    """Polish a rope on edges of this length."""
+    n = round(measure(curve).l_p / edge)
+    return tighten(curve, n, method="polish", watch=lambda _: watch())
 
 
 def _centred(curve: Curve) -> Curve:

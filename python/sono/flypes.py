@@ -17,9 +17,9 @@ Site = tuple[set[int], list[tuple[Slot, Slot]]]
 
 
 def flyped(diagram: Diagram, seed: int) -> Diagram:
-    """Return the diagram after some random flypes: the same for half the seeds, and where it has none."""
+    """Return the diagram after a random number of random flypes, if it has any."""
     random = np.random.default_rng(seed)
-    for _ in range(random.integers(2) * random.integers(1, MOST + 1)):
+    for _ in range(random.integers(MOST + 1)):
         if sites := _sites(diagram):
             diagram = _turned(diagram, *sites[random.integers(len(sites))])
     return diagram

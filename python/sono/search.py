@@ -13,6 +13,7 @@ machines, and a search gives the same minima whatever the number of workers.
 import json
 import math
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, Self, TypeAlias, TypeVar
 
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 from sono import library
 from sono._core import CurveError, Measures, Polish, Tightener
 from sono.invariants import Fingerprint, fingerprint
-from sono.pipeline import HOT, SLICE, Curve, Tight, as_curve, forces, measure, tighten
+from sono.pipeline import HOT, SLICE, Curve, as_curve, tighten
 from sono.scramble import scramble
 
 TRIAL_EDGE = 0.45
@@ -37,7 +38,7 @@ ANNEAL_EDGES = (0.8, 1.2)
 crosses. A shorter anneal meets the rarer minima less often in the same time, and so does a longer one."""
 
 OFFSETS = 2
-"""Offsets along the rope from which a shape is refined; the shorter result counts."""
+"""Offsets along the rope from which a shape is refined; the shortest result counts."""
 
 ROUND = 8
 REFINED = 2
@@ -46,17 +47,14 @@ REFINED = 2
 FINALISTS = 4
 """Shapes that are refined after the last round."""
 
-SETTLED = 2
-"""Minima that settle on other edges at the end."""
+RESEATED = 2
+"""Minima whose beads are seated anew at the end."""
 
 KEPT = 24
 """Unrefined shapes that are remembered."""
 
 SAME_RADII = 0.007
 """Relative difference of the radii of gyration up to which ropes of one edge length count as one shape."""
-
-SHORTER = 1e-7
-"""A rope is shorter than another of the same edges if its L_a is by so much, relatively."""
 
 SAME_LENGTH = 2e-4
 """Relative difference in L_a up to which two refined ropes of the same shape count as one minimum."""
@@ -164,27 +162,15 @@ def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
 
 
 def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
-    """Polish a shape to the end on finer edges, from a few offsets along the rope; the shortest counts.
-
-    Returns None for a shape that cannot be refined.
-    """
+    """Polish a shape to the end on finer edges. Returns None for a shape that cannot be refined."""
     assert shape.curve is not None
-    n = round(shape.length / FINE_EDGE)
-    found = []
-    for offset in range(OFFSETS):
-        try:
-            polish = _done(Polish(shape.curve, n, False, offset), watch)
-        except CurveError:
-            continue
-        status = polish.status()
-        tight, length = status.outcome == "tight", _length(status.best)
-        found.append(Minimum(shape.variant, length, tight, status.residual, polish.best(), [shape.radii]))
-    return min(found, key=rank, default=None)
+    polish = _polished(shape.curve, round(shape.length / FINE_EDGE), watch)
+    return polish and _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
 
 
 def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum:
     """Polish a minimum on n vertices, doubling the vertices on the way there."""
-    tight = _polished(minimum.curve, n, watch)
+    tight = tighten(minimum.curve, n, method="polish", watch=lambda _: watch())
     assert tight.residual is not None
     return replace(
         minimum,
@@ -195,29 +181,19 @@ def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum:
     )
 
 
-def settle(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
-    """Let a minimum settle on edges of half the length."""
-    curve, _ = settled(minimum.curve, 2 * sum(map(len, minimum.curve)), watch)
-    if curve is minimum.curve:
-        return minimum
-    length, residual = _length(measure(curve)), forces(curve).residual
-    return replace(minimum, length=length, tight=True, residual=residual, curve=curve)
+def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
+    """Polish a minimum on twice the vertices and then on its own number again; the shorter one counts.
 
-
-def settled(curve: Curve, finer: int, watch: Watch = unwatched) -> tuple[Curve, Tight]:
-    """Polish a rope on `finer` vertices and then on its own number again, for as long as that shortens it.
-
-    Returns it on its own and on the finer ones. Beads lie in grooves between those that they touch; on finer
-    edges these are shallow, and a rope may leave one that held it up, by a thousandth of its length at most.
+    Beads lie in grooves between those that they touch; among more beads these are shallow, and a rope may
+    leave one that held it up, by a thousandth of its length at most.
     """
-    n = sum(map(len, curve))
-    while True:
-        fine = _polished(curve, finer, watch)
-        again = _polished(fine.curve, n, watch)
-        longest = (1 - SHORTER) * _length(measure(curve))
-        if not again.converged or _length(again.measures) >= longest:
-            return curve, fine
-        curve = again.curve
+    n = sum(map(len, minimum.curve))
+    try:
+        fine = _done(Polish(minimum.curve, 2 * n, False, 0), watch)
+    except CurveError:
+        return minimum
+    polish = _polished(fine.best(), n, watch)
+    return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
 
 
 def rank(minimum: Minimum) -> tuple[bool, float]:
@@ -252,9 +228,7 @@ class Search:
     def run(self, source: Source, rounds: Iterator[range], submit: Submit) -> Iterator[None]:
         """Make the trials of these `rounds`, pausing after each; then refine the best shapes that are left.
 
-        The best minima settle at the end.
-
-        `submit` has functions of this module done elsewhere.
+        The best minima are seated anew at the end. `submit` has functions of this module done elsewhere.
         """
         refining = self._refined(submit, REFINED if self.trials else 0)
         trying = self._tried(source, submit, next(rounds, range(0)))
@@ -270,10 +244,10 @@ class Search:
         self._keep(refining)
         self._keep(self._refined(submit, FINALISTS))
         yield
-        settling = [submit(settle, minimum) for minimum in self.minima[:SETTLED]]
-        settled = [minimum() for minimum in settling]
-        self.minima = self.minima[SETTLED:]
-        for minimum in settled:
+        reseating = [submit(reseat, minimum) for minimum in self.minima[:RESEATED]]
+        reseated = [minimum() for minimum in reseating]
+        self.minima = self.minima[RESEATED:]
+        for minimum in reseated:
             self._merge(minimum)
         yield
 
@@ -367,9 +341,29 @@ def _spread(least: float, most: float, number: int) -> float:
     return least + (most - least) * ((0.5 + number * (math.sqrt(5) - 1) / 2) % 1)
 
 
-def _polished(curve: Curve, n: int, watch: Watch) -> Tight:
-    """Polish a rope on n vertices."""
-    return tighten(curve, n, method="polish", watch=lambda _: watch())
+def _polished(curve: Curve, n: int, watch: Watch) -> Polish | None:
+    """Polish a rope on n vertices from a few offsets along it, and return the shortest, if there is any."""
+    found = []
+    for offset in range(OFFSETS):
+        with suppress(CurveError):
+            found.append(_done(Polish(curve, n, False, offset), watch))
+    return min(found, key=lambda polish: (not _is_tight(polish), _length(polish.status().best)), default=None)
+
+
+def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
+    """Return the minimum with what the polish made of its rope."""
+    status = polish.status()
+    return replace(
+        minimum,
+        length=_length(status.best),
+        tight=_is_tight(polish),
+        residual=status.residual,
+        curve=polish.best(),
+    )
+
+
+def _is_tight(polish: Polish) -> bool:
+    return polish.status().outcome == "tight"
 
 
 def _length(measures: Measures) -> float:
