@@ -169,15 +169,18 @@ def divided(corners: NDArray[np.float64], longest: float) -> NDArray[np.float64]
     return np.vstack(pieces)
 
 
-def shuffled(strokes: Strokes, seed: int) -> Strokes:
-    """Return another arc presentation of the same type, after many random moves.
+def shuffled(strokes: Strokes, seed: int, more: int = 0) -> Strokes:
+    """Return another arc presentation of the same type, with so many columns `more`, after many random moves.
 
-    Rows and columns may be moved round cyclically, and neighbouring ones change places where their strokes
-    are apart or one lies within the other (P. Cromwell, "Embedding knots and links in an open book I",
-    Topology Appl. 64 (1995) 37). The same seed gives the same presentation.
+    A corner may become a step of another row and column. Rows and columns may be moved round cyclically, and
+    neighbouring ones change places where their strokes are apart or one lies within the other (P. Cromwell,
+    "Embedding knots and links in an open book I", Topology Appl. 64 (1995) 37). The same seed gives the same
+    presentation.
     """
     random = np.random.default_rng(seed)
-    for _ in range(2 * len(strokes)):
+    for _ in range(more):
+        strokes = _stepped(strokes, *map(int, random.integers([len(strokes), 2, 2, 2])))
+    for _ in range(2 * len(strokes) * (1 + more)):
         turn = int(random.integers(len(strokes)))
         strokes = strokes[turn:] + strokes[:turn]
         if _may_swap(strokes[0], strokes[1]) and random.random() < COMMUTE:
@@ -185,6 +188,20 @@ def shuffled(strokes: Strokes, seed: int) -> Strokes:
         # The same presentation with rows for columns; from the other side of the sheets, the same knot.
         strokes = _transposed(strokes)
     return strokes
+
+
+def _stepped(strokes: Strokes, column: int, end: int, above: int, right: int) -> Strokes:
+    """Return the presentation with a step in place of the corner at one end of a column.
+
+    The column ends in a new row above the corner's or below it, and a new column to the right or left leads
+    from there to the old one.
+    """
+    new = strokes[column][end] + above
+    rows = [tuple(row + (row >= new) for row in ends) for ends in strokes]
+    corner, other = rows[column][end], rows[column][1 - end]
+    rows[column] = min(new, other), max(new, other)
+    rows.insert(column + right, (min(new, corner), max(new, corner)))
+    return [(low, high) for low, high in rows]
 
 
 def _may_swap(one: tuple[int, int], other: tuple[int, int]) -> bool:

@@ -38,6 +38,10 @@ _DRAWN = {
     "chain3": "chain3",
 }
 
+SAME_SIZE = 16
+SIZES = 4
+"""Variants drawn from arc presentations: so many have as few columns as possible, so many one more, ..."""
+
 _TORUS = re.compile(r"t\s*\(\s*(-?\d+)\s*,\s*(-?\d+)\s*\)", re.IGNORECASE)
 _CHAIN = re.compile(r"chain\s*(\d+)", re.IGNORECASE)
 _BRAID = re.compile(r"-?\d+([\s,]+-?\d+)+")
@@ -85,7 +89,7 @@ def start(name: str, variant: int = 0) -> Curve:
     plain = {known.casefold(): known for known in names()}.get(plain.casefold(), plain)
     row = _from_knotinfo(plain) if _KNOTINFO.fullmatch(plain) else _knots().get(plain)
     if row and variant > 0:
-        return grid(shuffled(_strokes(row["grid"]), variant))
+        return grid(shuffled(_strokes(row["grid"]), variant, variant // SAME_SIZE % SIZES))
     if row and variant < 0:
         return lifted(flyped(_diagram(row["pd"]), -variant), -variant)
     if variant < 0:
