@@ -75,6 +75,15 @@ def test_moves_keep_the_type(seed: int) -> None:
     assert fingerprint(grid(shuffled(TREFOIL, seed))) == fingerprint(start("3_1"))
 
 
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("more", [1, 3])
+def test_steps_keep_the_type(seed: int, more: int) -> None:
+    stepped = shuffled(FIGURE_EIGHT, seed, more)
+    assert len(stepped) == len(FIGURE_EIGHT) + more
+    assert fingerprint(grid(stepped)) == fingerprint(start("4_1"))
+    assert fingerprint(grid(shuffled(TREFOIL, seed, more))) == fingerprint(start("3_1"))
+
+
 def test_moves_follow_the_seed() -> None:
     assert shuffled(FIGURE_EIGHT, 1) == shuffled(FIGURE_EIGHT, 1)
     assert len({tuple(shuffled(FIGURE_EIGHT, seed)) for seed in range(20)}) > 10

@@ -79,9 +79,10 @@ def start(name: str, variant: int = 0) -> Curve:
     "1 -2 1 -2" of two generators or more; letter case and surrounding space do not matter.
 
     Variant 0 is a closed braid or a torus knot, ready to be tightened. Each further `variant` is another
-    conformation of the same type. Those of a knot in the tables are random arc presentations, and the
-    negative ones random drawings of planar diagrams; those of other knots are isotopic scrambles. Raises
-    ValueError, with the nearest known name, for anything else.
+    conformation of the same type. Those of a knot in the tables are random arc presentations, some of them
+    with more columns than it needs; the negative ones are drawn from its planar diagram after random flypes.
+    Those of other knots are isotopic scrambles. Raises ValueError, with the nearest known name, for anything
+    else.
     """
     plain = name.strip()
     if plain[:1].casefold() == "m":
