@@ -15,7 +15,7 @@ ONE = ("--trials", "1", "--minima", "1")
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "ANNEAL", {"anneal_sweeps": 5000, "anneal_tolerance": 0.5})
+    monkeypatch.setattr(search, "GENTLE", 1)
 
 
 def rows(text: str) -> list[tables.Row]:

@@ -16,7 +16,7 @@ from sono.search import Search, Shape, Source, attempt, finish, radii_of_gyratio
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Short anneals are enough for knots of few crossings."""
-    monkeypatch.setattr(search, "ANNEAL", {"anneal_sweeps": 5000, "anneal_tolerance": 0.5})
+    monkeypatch.setattr(search, "GENTLE", 1)
 
 
 def source(knot: str) -> Source:

@@ -1,10 +1,10 @@
 """The search for the shortest tight rope of a knot: many trials from different starts.
 
 The tight shape that a rope ends in depends on how it begins, and the shortest one is found by few starts in a
-hundred. A trial collapses a start, anneals it with SONO on few beads and polishes it there, in about half a
-second; what decides is the variety of the starts, so each trial takes another variant of `library.start`. At
-so few beads the grooves between them blur lengths by a few tenths of a percent, so the most promising shapes
-are refined to finer edges, where minima are told apart by length and radii of gyration.
+hundred. A trial collapses a start, anneals it with SONO on few beads and polishes it there, in half a second
+for 8 crossings; what decides is the variety of the starts, so each trial takes another variant of
+`library.start`. At so few beads the grooves between them blur lengths by a few tenths of a percent, so the
+most promising shapes are refined to finer edges, where minima are told apart by length and radii of gyration.
 
 Trials are pure functions of a source and the number of its variant, so they may run in threads or on other
 machines, and a search gives the same minima whatever the number of workers.
@@ -32,10 +32,14 @@ TRIAL_EDGE = 0.45
 FINE_EDGE = 0.2
 """Edge length at which minima are compared."""
 
-ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
+HOT_ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
+GENTLE_ANNEAL = {"anneal_sweeps": 5_000, "anneal_tolerance": 0.1}
+GENTLE = 2 / 3
+"""The anneals of trials, and the share of the gentle ones. A hot anneal crosses barriers and leads many
+starts to the same few shapes; a gentle one, of fewer sweeps, keeps rarer shapes that are near the start."""
+
 ANNEAL_EDGES = (0.8, 1.2)
-"""The anneal of a trial, with edges of other lengths each time: the coarser, the higher the barriers that it
-crosses. A shorter anneal meets the rarer minima less often in the same time, and so does a longer one."""
+"""Edges of the anneal, of other lengths each time: the coarser, the higher the barriers that it crosses."""
 
 OFFSETS = 2
 """Offsets along the rope from which a shape is refined; the shortest result counts."""
@@ -149,7 +153,8 @@ def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
         collapsed = _done(Tightener(source.start(variant, watch), "collapse", 0, "{}"), watch)
         edge = _spread(*ANNEAL_EDGES, variant)
         n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
-        settings = json.dumps(ANNEAL | {"seed": abs(variant)})
+        anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
+        settings = json.dumps(anneal | {"seed": abs(variant)})
         annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
         n = round(annealed.status().best.l_p / TRIAL_EDGE)
         polished = _done(Polish(annealed.best(), n, True, abs(variant)), watch)
@@ -336,9 +341,9 @@ def _done(worker: Worker, watch: Watch) -> Worker:
     return worker
 
 
-def _spread(least: float, most: float, number: int) -> float:
-    """Spread numbers evenly over a range by multiples of the golden ratio."""
-    return least + (most - least) * ((0.5 + number * (math.sqrt(5) - 1) / 2) % 1)
+def _spread(least: float, most: float, number: int, step: float = (math.sqrt(5) - 1) / 2) -> float:
+    """Spread numbers evenly over a range by multiples of an irrational step, by default the golden ratio."""
+    return least + (most - least) * ((0.5 + number * step) % 1)
 
 
 def _polished(curve: Curve, n: int, watch: Watch) -> Polish | None:

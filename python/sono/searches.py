@@ -6,7 +6,7 @@ import math
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
@@ -297,6 +297,19 @@ class _Hunt:
         for component in self.source.curve:
             digest.update(component.tobytes() + b"end of component")
         return [digest.hexdigest(), str(self.job.seed)]
+
+
+def spent(checkpoints: Iterable[Path | None]) -> str:
+    """Tell what the searches of these checkpoints took in all, and how often a trial changed the type."""
+    trials = changed = 0
+    seconds = 0.0
+    for path in checkpoints:
+        with suppress(OSError, ValueError, LookupError, TypeError):  # searches that did not begin have none
+            state = json.loads(path.read_text(encoding="utf-8")) if path else {}
+            trials, changed = trials + state["trials"], changed + state["changed"]
+            seconds += state["seconds"]
+    hours = seconds / 3600
+    return f"trials: {trials}, of which {changed} changed their knot type; hours of search: {hours:.2f}"
 
 
 def _unrefined(shape: Shape) -> Minimum:

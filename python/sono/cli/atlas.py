@@ -70,7 +70,7 @@ def command(
     # Imported here, since numpy would make --help wait.
     from sono import library
     from sono.atlas import Atlas
-    from sono.searches import SearchJob
+    from sono.searches import SearchJob, spent
 
     atlas = Atlas(Path(folder))
     if "-" in sources:
@@ -103,7 +103,11 @@ def command(
         paths = [path for job in work if job.search for path in job.search.files()]
         paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
         options.prepare(paths, [], False)
-        sys.exit(Batch(options.writer(format_, columns), quiet).run(work, workers.count))
+        code = Batch(options.writer(format_, columns), quiet).run(work, workers.count)
+    searches = [job.search.checkpoint for job in work if job.search]
+    if searches and not quiet:
+        options.complain(spent(searches))
+    sys.exit(code)
 
 
 @dataclass(frozen=True)
