@@ -87,10 +87,10 @@ def test_another_knot_is_not_taken(tmp_path: Path) -> None:
     atlas = Atlas(tmp_path)
     trefoil = tight(tmp_path / "3_1.txt", "3_1", 120)
     for name in ("4_1", "m3_1"):
-        with pytest.raises(ValueError, match="another knot type; it is not taken"):
+        with pytest.raises(ValueError, match=f"3_1.txt: is of another knot type than {name}; remove it"):
             atlas.take(name, trefoil)
     assert not (tmp_path / "tight").exists()
-    assert confirmed_type("3_1", library.start("3_1", 1)) == "homfly"
+    assert confirmed_type("3_1", library.start("3_1", 1), "3_1.txt") == "homfly"
 
 
 def test_the_command_updates_and_checks(folder: Path, sono: Sono) -> None:
@@ -110,7 +110,9 @@ def test_the_command_updates_and_checks(folder: Path, sono: Sono) -> None:
     formats.write(file, library.start("3_1"))
     assert "its row is not that of its file" in sono("atlas", "3_1", *more).stderr
     formats.write(file, library.start("4_1"))
-    assert "another knot type" in sono("atlas", "3_1", *more).stderr
+    wrong = "sono: mine/tight/3_1.txt: is of another knot type than 3_1; remove it"
+    assert wrong in sono("atlas", "3_1", *more).stderr
+    assert wrong in sono("atlas", "3_1", "--update", "--trials", "1", *more).stderr
 
 
 def test_files_are_taken_in(folder: Path, sono: Sono) -> None:
@@ -119,3 +121,8 @@ def test_files_are_taken_in(folder: Path, sono: Sono) -> None:
     result = sono("atlas", "3_1.mine.txt", "--folder", "mine", "--update")
     assert result.exit_code == 0
     assert [row["knot"] for row in tables.read("mine/atlas.tsv")] == ["3_1"]
+    # One of another knot is refused even if it is too long to be taken.
+    mirrored = [component * [1, 1, -1.001] for component in library.start("3_1")]
+    formats.write(folder / "3_1.mirror.txt", mirrored)
+    result = sono("atlas", "3_1.mirror.txt", "--folder", "mine", "--update")
+    assert (result.exit_code, "3_1.mirror.txt: is of another knot type" in result.stderr) == (1, True)

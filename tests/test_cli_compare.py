@@ -20,7 +20,9 @@ def test_the_differences_have_their_signs(folder: Path, sono: Sono) -> None:
     assert chiral["l_c_difference"] == pytest.approx(0.2196)
     assert mirrored["l_a_difference"] == pytest.approx(0.0064)
     assert link["published"] is None
-    assert result.stderr == "sono: of 2 rows L_a is at most the published value in 1, L_c in 1\n"
+    counted, unknown = result.stderr.splitlines()
+    assert counted == "sono: of 2 rows L_a is at most the published value in 1, L_c in 1"
+    assert unknown == "sono: of 1 rows no ropelength is published under the name they have"
 
 
 def test_the_finer_level_counts_for_l_c(folder: Path, sono: Sono) -> None:
@@ -34,12 +36,28 @@ def test_another_table_to_compare_with(folder: Path, sono: Sono) -> None:
     Path("mine.tsv").write_text("knot\tL_a\nHopf\t25.0\n")
     result = sono("compare", "-", "--published", "mine.tsv", input=TABLE)
     assert "Hopf\t60\t25.1\t-\t25.0\tmine.tsv\t0.1" in result.stdout
+    Path("mirror.tsv").write_text("knot\tL_a\nm3_1\t32.7\n")
+    result = sono("compare", "mirror.tsv", "--published", "mirror.tsv", "-q", "--columns", "l_a_difference")
+    assert result.stdout == "L_a-published\n0.0\n"
 
 
 def test_a_pipe_from_measure(folder: Path, sono: Sono) -> None:
     result = sono("compare", "-", input=sono("measure", "3_1.txt").stdout)
     assert result.exit_code == 0
     assert result.stdout.splitlines()[1].startswith("3_1\t69\t")
+
+
+@pytest.mark.parametrize("name", ["8_4.tight", "m8_4.n359", "M8_4", "8_4.n359.best2", "8_4"])
+def test_files_names_are_understood(sono: Sono, name: str) -> None:
+    result = sono("compare", "-", "--columns", "published", input=f"knot\tL_a\n{name}\t71.45\n")
+    assert result.stdout == "published\n71.4704\n"
+
+
+def test_a_table_to_compare_with_needs_lengths(folder: Path, sono: Sono) -> None:
+    Path("mine.tsv").write_text("knot\tn\nHopf\t60\n")
+    result = sono("compare", "-", "--published", "mine.tsv", input=TABLE)
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert "mine.tsv: has no column published, nor L_a" in result.stderr
 
 
 def test_no_table(folder: Path, sono: Sono) -> None:

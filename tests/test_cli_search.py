@@ -122,7 +122,7 @@ def test_standard_input_and_output(folder: Path, sono: Sono) -> None:
         (["3_1", "--force", "--resume"], "give one of them"),
         (["3_1", "--shard", "3/2"], "give I/N with I from 1 to N"),
         (["3_1", "--list", "nowhere.txt"], "does not exist"),
-        (["3_1", "3_1"], "2 of the files would write 3_1.tight.txt"),
+        (["3_1", "3_1"], "3_1.tight.txt would be written 2 times; give each knot once"),
         (["3_1", "--dl", "3"], "--dl"),
     ],
 )
@@ -166,8 +166,44 @@ def test_a_finished_file_of_another_knot_or_edge_length_is_not_kept(folder: Path
     sono("search", "3_1", *ONE)
     finer = rows(sono("search", "3_1", *ONE, "--resume", "--dl", "0.1").stdout)
     assert measure(formats.read("3_1.tight.txt").components).n == finer[0]["n"] == 327
+    before = (folder / "3_1.tight.txt").read_text()
     other = sono("search", "4_1", *ONE, "-o", "3_1.tight.txt", "--resume")
-    assert float(rows(other.stdout)[0]["l_a"] or 0) > 42
+    assert (other.exit_code, (folder / "3_1.tight.txt").read_text()) == (1, before)
+    assert "3_1.tight.txt: is another knot than 4_1; move it away" in other.stderr
+
+
+def test_a_resumed_search_takes_nothing_away(folder: Path, sono: Sono, spawn: Spawn) -> None:
+    row = rows(sono("search", "3_1", "--trials", "2", "--dl", "0.1").stdout)[0]
+    finished = (folder / "3_1.tight.txt").read_text()
+    # Neither coarser edges nor a search that is stopped before it has refined a shape.
+    coarser = sono("search", "3_1", *ONE, "--dl", "0.4", "--resume")
+    assert (coarser.exit_code, rows(coarser.stdout)[0]["l_c"]) == (0, row["l_c"])
+    assert (folder / "3_1.tight.txt").read_text() == finished
+    process = spawn("search", "3_1", "--trials", "10000", "--resume", "--checkpoint", "kept")
+    state = folder / "kept/3_1.search.json"
+    for _ in range(600):
+        if state.exists() and '"trials": 0' not in state.read_text():
+            break
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    output, messages = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "trials is no better than what is in 3_1.tight.txt; --resume goes on from here" in messages
+    assert rows(output)[0]["l_c"] == row["l_c"]
+    assert (folder / "3_1.tight.txt").read_text() == finished
+
+
+def test_what_a_stopped_search_left_is_not_replaced_by_a_longer_rope(folder: Path, sono: Sono) -> None:
+    best = rows(sono("search", "6_1", "--trials", "8", "--minima", "1").stdout)[0]
+    file = folder / "6_1.tight.txt"
+    file.write_text(file.read_text().replace("6_1: tight", "6_1: stopped"))
+    before = file.read_text()
+    search.SEED_STRIDE, stride = 0, search.SEED_STRIDE
+    try:
+        again = rows(sono("search", "6_1", "--trials", "1", "--seed", "1", "--resume").stdout)
+    finally:
+        search.SEED_STRIDE = stride
+    assert (file.read_text(), again[0]["l_a"]) == (before, best["l_a"])
 
 
 def test_a_better_rope_is_not_overwritten(folder: Path, sono: Sono) -> None:

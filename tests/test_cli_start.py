@@ -64,6 +64,12 @@ def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
         (["--braid", "1 0"], "a braid generator must not be 0"),
         (["--braid", "a b"], "give whole numbers"),
         (["3_1", "--scramble", "x"], "'--scramble'"),
+        (["3_1", "--scramble", "-1"], "'--scramble'"),
+        (["--braid", ""], "give whole numbers"),
+        (["--braid", "1 1", "--variant", "-2"], "--variant -2: a braid word has no planar diagram"),
+        (["Hopf", "--variant", "-2"], "only the knots of the tables have negative variants"),
+        (["--list", "3_1"], "--list stands alone"),
+        (["--list", "-o", "names.txt"], "--list stands alone"),
     ],
 )
 def test_usage_errors(sono: Sono, arguments: list[str], message: str) -> None:

@@ -50,6 +50,9 @@ class Cluster:
     def kill_a_worker(self) -> None:
         self.processes.pop().kill()
 
+    def kill_the_scheduler(self) -> None:
+        self.processes[0].kill()
+
     def close(self) -> None:
         for process in self.processes:
             process.kill()
@@ -118,6 +121,17 @@ def test_a_killed_worker_loses_nothing(folder: Path, spawn: Spawn, cluster: Clus
     assert sorted(str(row["knot"]) for row in found) == knots
     assert {row["status"] for row in found} == {"tight"}
     assert sorted(path.name for path in (folder / "out").iterdir()) == [f"{knot}.n100.txt" for knot in knots]
+
+
+def test_a_lost_cluster_leaves_the_best(folder: Path, spawn: Spawn, cluster: Cluster) -> None:
+    process = spawn("search", "3_1", "--time-limit", "600", "--cluster", cluster.address)
+    wait_for((folder / "3_1.tight.txt").exists)
+    cluster.kill_the_scheduler()
+    output, messages = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "sono: 3_1: the cluster was lost; the best of" in messages
+    assert rows(output)[0]["status"] == "stopped"
+    assert vertices(folder / "3_1.tight.txt")
 
 
 def test_ctrl_c_leaves_the_cluster(folder: Path, spawn: Spawn, cluster: Cluster) -> None:

@@ -146,8 +146,8 @@ def test_a_table_is_read_as_it_was_written(format: str, tmp_path: Path) -> None:
     [
         ("", "table:1: has no column knot"),
         ("n\tL_a\n3\t4\n", "table:1: has no column knot"),
-        ("knot\tn\n3_1\tx\n", "table:2: does not fit the header: invalid literal"),
-        ("knot\tn\n3_1\n", "table:2: does not fit the header"),
+        ("knot\tn\n3_1\tx\n", "table:2: does not fit the header: 'x' in the column n is no whole number"),
+        ("knot\tn\n3_1\n", "table:2: does not fit the header: it has 1 cells for 2 columns"),
         ('{"knot": "3_1"}\n{"knot": \n', "table:2: is no JSON"),
     ],
 )

@@ -20,8 +20,7 @@ from sono.batch import KEPT_RESIDUAL, TIGHT, measured, says_tight, title
 from sono.formats import FormatError
 from sono.invariants import Curve, fingerprint, homfly
 from sono.pipeline import Tight, forces, measure, tighten
-from sono.search import FINE_EDGE, Watch, unwatched
-from sono.searches import SAME_EDGES
+from sono.search import FINE_EDGE, Watch, same_edges, unwatched
 from sono.tables import Row, Value
 
 FINEST_EDGE = 0.03
@@ -65,6 +64,7 @@ class Atlas:
         than its name says.
         """
         curve = self._fit(file, watch)
+        confirmed_type(knot, curve, file)
         if not self._is_shorter(knot, curve):
             row = self.rows().get(knot)
             if row and self._is_current(row):
@@ -77,7 +77,7 @@ class Atlas:
         again = _polished(fine.curve, FINE_EDGE, watch)
         if again.converged and (again.measures.l_a or math.inf) < (measure(curve).l_a or math.inf):
             curve = _centred(again.curve)
-        confirmed_type(knot, curve)
+        confirmed_type(knot, curve, file)
         with self.lock:
             if self._is_shorter(knot, curve):
                 self._make()
@@ -89,11 +89,13 @@ class Atlas:
         return row
 
     def _is_shorter(self, knot: str, curve: Curve) -> bool:
-        """Tell whether a rope is shorter than what there is. Raises `FormatError`."""
-        if not os.path.exists(self.path(knot)):
+        """Tell whether a rope is shorter than what there is. Raises `FormatError` and `ValueError`."""
+        path = self.path(knot)
+        if not os.path.exists(path):
             return True
-        length, bound = measure(curve).l_a or math.inf, measured(self.path(knot))[1].l_a or 0
-        return length < (1 - SHORTER) * bound
+        there, m = measured(path)
+        confirmed_type(knot, there.components, path)
+        return (measure(curve).l_a or math.inf) < (1 - SHORTER) * (m.l_a or 0)
 
     def _make(self) -> None:
         """Make the folders. Raises `FormatError`."""
@@ -106,8 +108,8 @@ class Atlas:
         """Return the rope of a file: tight, of radius 1, with edges of FINE_EDGE, centred."""
         curve, m = measured(file)
         components = [component / m.r_s for component in curve.components]
-        same_edges = abs(m.dl / m.r_s - FINE_EDGE) < SAME_EDGES * FINE_EDGE
-        if not (same_edges and says_tight(file) and forces(components).residual <= KEPT_RESIDUAL):
+        fits = same_edges(m.dl / m.r_s, FINE_EDGE)
+        if not (fits and says_tight(file) and forces(components).residual <= KEPT_RESIDUAL):
             polished = _polished(components, FINE_EDGE, watch)
             if not polished.converged:
                 raise ValueError(f"{file}: does not get tight with {polished.measures.n} vertices")
@@ -125,7 +127,7 @@ class Atlas:
         return {
             **{"knot": knot, "n": m.n, "dl": m.dl, "l_p": m.l_p, "l_c": m.l_c, "l_a": m.l_a},
             **{"residual": forces(file.components).residual, "seed": seed, "variant": variant},
-            "type": confirmed_type(knot, file.components),
+            "type": confirmed_type(knot, file.components, self.path(knot)),
         }
 
     def checked(self, knot: str) -> Row:
@@ -166,8 +168,8 @@ def _centred(curve: Curve) -> Curve:
     return [(component - centre).round(DECIMALS) for component in curve]
 
 
-def confirmed_type(knot: str, curve: Curve) -> str:
-    """Return in which invariant a curve agrees with the knot of this name: "homfly" or "alexander".
+def confirmed_type(knot: str, curve: Curve, file: str) -> str:
+    """Return in which invariant a file's curve agrees with the knot of this name: "homfly" or "alexander".
 
     Without the extra sono[identify] it is the weaker one. A few pairs of knots, such as 8_16 and 10_156,
     agree in both. Raises `ValueError` if the curve is another knot.
@@ -180,7 +182,7 @@ def confirmed_type(knot: str, curve: Curve) -> str:
     except ImportError:
         by = "alexander"
     if wrong:
-        raise ValueError(f"{knot}: the rope is of another knot type; it is not taken")
+        raise ValueError(f"{file}: is of another knot type than {knot}; remove it or name it otherwise")
     return by
 
 

@@ -1,8 +1,10 @@
 """Ropelengths from the literature, beside ours."""
 
+import re
 from functools import cache
 
 from sono import library, tables
+from sono.formats import FormatError
 from sono.tables import Row, Value
 
 
@@ -17,13 +19,22 @@ def table() -> dict[str, Row]:
 
 def from_file(path: str) -> dict[str, Row]:
     """Return the rows of another table: its column published, or else its L_a. Raises `FormatError`."""
+    rows = tables.read(path)
+    if not any(row.get("published") or row.get("l_a") for row in rows):
+        raise FormatError(f"{path}: has no column published, nor L_a, with a value in it")
     return {
-        str(row["knot"]): {
+        _type(row["knot"]): {
             "published": row.get("published") or row.get("l_a"),
             "source": row.get("source") or path,
         }
-        for row in tables.read(path)
+        for row in rows
     }
+
+
+def _type(knot: Value) -> str:
+    """Return the name of a knot, as tables have it, without what files and mirror images add to it."""
+    stem = re.sub(r"(\.tight|\.n\d+|\.best\d*)+$", "", str(knot))
+    return re.sub("^m(?=.)", "", stem, flags=re.IGNORECASE)
 
 
 def beside(row: Row, published: dict[str, Row]) -> Row:
@@ -31,7 +42,7 @@ def beside(row: Row, published: dict[str, Row]) -> Row:
 
     The difference of L_c is that of the finer level, where the row has one.
     """
-    other = published.get(str(row["knot"]).removeprefix("m"), {})
+    other = published.get(_type(row["knot"]), {})
     bound, source = other.get("published"), other.get("source")
     ours = {"l_a": row.get("l_a"), "l_c": row.get("l_c_fine") or row.get("l_c")}
     differences = {f"{key}_difference": _difference(value, bound) for key, value in ours.items()}

@@ -63,6 +63,9 @@ SAME_RADII = 0.007
 SAME_LENGTH = 2e-4
 """Relative difference in L_a up to which two refined ropes of the same shape count as one minimum."""
 
+SAME_EDGES = 0.02
+"""Relative difference of edge lengths up to which the grooves of two ropes are alike."""
+
 SEED_STRIDE = 10**6
 """Variants of one seed; those of the next begin after them."""
 
@@ -170,6 +173,8 @@ def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
     """Polish a shape to the end on finer edges. Returns None for a shape that cannot be refined."""
     assert shape.curve is not None
     polish = _polished(shape.curve, round(shape.length / FINE_EDGE), watch)
+    if polish and not same_edges(polish.status().best.dl, FINE_EDGE):  # it was far from tight
+        polish = _polished(polish.best(), round(_length(polish.status().best) / FINE_EDGE), watch)
     return polish and _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
 
 
@@ -204,6 +209,11 @@ def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
 def rank(minimum: Minimum) -> tuple[bool, float]:
     """Order tight ropes before others, then the shorter before the longer."""
     return not minimum.tight, minimum.length
+
+
+def same_edges(one: float, other: float) -> bool:
+    """Tell whether edges are so equally long that ropes are compared by their L_a alone."""
+    return abs(one - other) <= SAME_EDGES * other
 
 
 def radii_of_gyration(curve: Curve) -> Radii:

@@ -265,16 +265,23 @@ def _of_json(line: str) -> Row:
     except ValueError as error:
         raise ValueError(f"is no JSON: {error}") from error
     if not (isinstance(row, dict) and "knot" in row):
-        raise ValueError("has no knot; give a table that sono wrote as tsv, csv or json")
+        raise ValueError("is no row with a knot; give a table that sono wrote as tsv, csv or json")
     return {key: value for key, value in row.items() if key in COLUMNS}
 
 
 def _of_cells(header: Sequence[str], cells: Sequence[str]) -> Row:
-    return {
-        key: None if cell == "-" else COLUMNS[key].kind(cell)
-        for key, cell in zip(header, cells, strict=True)
-        if key in COLUMNS
-    }
+    if len(cells) != len(header):
+        raise ValueError(f"it has {len(cells)} cells for {len(header)} columns; a - stands for none")
+    return {key: _of_cell(key, cell) for key, cell in zip(header, cells, strict=True) if key in COLUMNS}
+
+
+def _of_cell(key: str, cell: str) -> Value:
+    kind = COLUMNS[key].kind
+    try:
+        return None if cell == "-" else kind(cell)
+    except ValueError:
+        what = "whole number" if kind is int else "number"
+        raise ValueError(f"{cell!r} in the column {COLUMNS[key].header} is no {what}") from None
 
 
 def _rounded(row: Row, column: Column) -> str:

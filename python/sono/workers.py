@@ -4,10 +4,12 @@ Both give the same results, since what they do are pure functions.
 """
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, Protocol, Self, TypeVar, cast
+
+from sono.pipeline import Stopped
 
 Result = TypeVar("Result")
 
@@ -26,7 +28,7 @@ class Workers(Protocol):
     def submit(
         self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
     ) -> Callable[[], Result]:
-        """Begin a function; what is returned waits for its result.
+        """Begin a function; what is returned waits for its result. It raises `Stopped` if they are lost.
 
         `watch` is called about ten times a second meanwhile; what it raises ends the work and the waiting.
         """
@@ -88,10 +90,10 @@ class Cluster:
                         result: Result = future.result(timeout=POLL)
                         return result
                     watch()
-            except BaseException as error:
+            except (OSError, CancelledError) as error:  # nobody else cancels it
+                raise Stopped("the cluster was lost") from error
+            except BaseException:
                 future.cancel()
-                if isinstance(error, OSError):
-                    raise RuntimeError(f"the cluster was lost: {error}") from error
                 raise
 
         return wait

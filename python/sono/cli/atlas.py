@@ -91,6 +91,7 @@ def command(
                     minima=1,
                     checkpoint=Path(checkpoint, f"{source}.s{seed}.json"),
                     resume=True,
+                    way_on="the next --update goes on from here",
                 )
                 if update and not Path(source).is_file()
                 else None,

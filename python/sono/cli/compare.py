@@ -35,7 +35,7 @@ def command(
     from sono.formats import FormatError
 
     count = {"l_a_difference": 0, "l_c_difference": 0}
-    total = 0
+    total = unknown = 0
     failed = False
     try:
         bounds = published.from_file(published_file) if published_file else published.table()
@@ -44,6 +44,7 @@ def command(
                 beside = published.beside(row, bounds)
                 table.row(beside)
                 total += beside["published"] is not None
+                unknown += beside["published"] is None
                 for key in count:
                     difference = beside.get(key)
                     count[key] += isinstance(difference, float) and difference <= 0
@@ -53,4 +54,6 @@ def command(
     if not quiet and total:
         l_a, l_c = count.values()
         options.complain(f"of {total} rows L_a is at most the published value in {l_a}, L_c in {l_c}")
+    if not quiet and unknown:
+        options.complain(f"of {unknown} rows no ropelength is published under the name they have")
     sys.exit(1 if failed else 0)

@@ -170,7 +170,7 @@ def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool) -> None:
 def _refuse_to_overwrite(paths: Sequence[str], fresh: bool) -> None:
     for path, times in Counter(paths).items():
         if times > 1:
-            raise click.UsageError(f"{times} of the files would write {path}; rename one of them")
+            raise click.UsageError(f"{path} would be written {times} times; give each knot once, by one name")
         if fresh and os.path.exists(path):
             raise click.UsageError(
                 f"{path} exists; --force starts anew, --resume goes on from it, -o names another place"

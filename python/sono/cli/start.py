@@ -17,7 +17,11 @@ import click
     metavar="K",
 )
 @click.option(
-    "--scramble", "scramble_seed", type=int, metavar="SEED", help="Entangle the curve, isotopically."
+    "--scramble",
+    "scramble_seed",
+    type=click.IntRange(0),
+    metavar="SEED",
+    help="Entangle the curve, isotopically.",
 )
 @click.option("--list", "list_names", is_flag=True, help="List the names that are built in.")
 @click.option("-o", "--output", default="-", show_default=True, metavar="FILE", help="Where to write it.")
@@ -45,10 +49,14 @@ def command(
     from sono.scramble import scramble
 
     if list_names:
+        if name or word or output != "-":
+            raise click.UsageError("--list stands alone")
         click.echo("\n".join(library.names()))
         return
     if (name is None) == (word is None):
         raise click.UsageError("give either a NAME or a --braid word")
+    if word is not None and variant < 0:
+        raise click.UsageError(f"--variant {variant}: a braid word has no planar diagram; give 0 or more")
     if output != "-" and Path(output).exists() and not force:
         raise click.UsageError(f"{output} exists; --force overwrites it")
     try:
@@ -75,6 +83,8 @@ def command(
 
 def _generators(word: str) -> list[int]:
     try:
-        return [int(generator) for generator in word.replace(",", " ").split()]
+        if generators := [int(generator) for generator in word.replace(",", " ").split()]:
+            return generators
     except ValueError:
-        raise click.UsageError(f'--braid {word!r}: give whole numbers such as "1 -2 1 -2"') from None
+        pass
+    raise click.UsageError(f'--braid {word!r}: give whole numbers such as "1 -2 1 -2"')

@@ -113,8 +113,8 @@ def command(
     """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N.
 
     The rope has radius 1. L_p, L_c and L_a are what the written vertices measure. Where a run is stopped by
-    Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt. Standard input has the
-    NAME stdin, or else stdin-2 and so on.
+    Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt, unless it is on a cluster.
+    Standard input has the NAME stdin, or else stdin-2 and so on.
     """
     # Imported here, since numpy would make --help wait.
     from sono.batch import Job
