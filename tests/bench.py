@@ -24,8 +24,9 @@ def race(method: Method) -> tuple[float, float | None]:
             reached.append((time.perf_counter() - start, best.l_p))
             raise Stopped
 
-    tight = sono.tighten(sono.start("3_1"), 480, method=method, watch=watch)
-    if reached:
+    try:
+        tight = sono.tighten(sono.start("3_1"), 480, method=method, watch=watch)
+    except Stopped:
         return reached[0]
     seconds = time.perf_counter() - start
     return seconds, tight.measures.l_p if tight.measures.l_p <= GOAL else None

@@ -87,10 +87,23 @@ def test_what_is_finished_is_kept(folder: Path, sono: Sono) -> None:
     assert rows(sono("search", "3_1", "--trials", "3", "--resume").stdout)[0]["variant"] is not None
 
 
-def test_a_checkpoint_makes_the_whole_of_two_halves(folder: Path, sono: Sono) -> None:
+def test_a_checkpoint_makes_the_whole_of_two_halves(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = []
+
+    def attempt(source: search.Source, variant: int, watch: search.Watch) -> search.Shape:
+        tried.append(variant)
+        return make(source, variant, watch)
+
+    make = search.attempt
+    monkeypatch.setattr(search, "attempt", attempt)
     more = ("--checkpoint", "kept", "--minima", "1")
     sono("search", "4_1", "--trials", "4", *more)
+    assert tried == [0, -1, 1, -2]
+    tried.clear()
     half = rows(sono("search", "4_1", "--trials", "8", "--resume", *more).stdout)
+    assert tried == [2, -3, 3, -4]
     whole = rows(sono("search", "4_1", "--trials", "8", "-o", "whole.txt", "--minima", "1").stdout)
     assert half[0]["l_a"] == pytest.approx(whole[0]["l_a"], abs=1e-4)
     assert half[0]["trials"] == 8
@@ -256,6 +269,30 @@ def test_a_full_disk_under_the_checkpoint_loses_no_rope(
     assert "No space left on device" in result.stderr
     assert rows(result.stdout)[0]["status"] == "tight"
     assert (folder / "3_1.tight.txt").exists()
+
+
+@pytest.mark.parametrize("times", [1, 100])
+def test_a_full_disk_under_the_output_loses_no_row(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch, times: int
+) -> None:
+    write = formats.write
+    failed: list[str] = []
+
+    def full(target: str, *more: object) -> None:
+        if len(failed) < times:
+            failed.append(target)
+            raise formats.FormatError(f"{target}: cannot be written: No space left on device")
+        write(target, *more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(formats, "write", full)
+    result = sono("search", "3_1", "--trials", "2", "--minima", "1")
+    assert rows(result.stdout)[0]["status"] == "tight"
+    if times == 1:  # there was room again
+        assert (result.exit_code, result.stderr) == (0, "")
+        assert measure(formats.read("3_1.tight.txt").components).l_a == rows(result.stdout)[0]["l_a"]
+    else:
+        assert result.exit_code == 1
+        assert result.stderr == "sono: 3_1.tight.txt: cannot be written: No space left on device\n"
 
 
 def test_an_empty_shard_has_nothing_to_do(sono: Sono) -> None:

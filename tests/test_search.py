@@ -10,6 +10,7 @@ import pytest
 
 from sono import library, measure, search
 from sono.invariants import fingerprint
+from sono.pipeline import Stopped
 from sono.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine, reseat
 
 
@@ -154,6 +155,40 @@ def test_a_curve_is_searched_by_its_scrambles(knot: str) -> None:
     assert attempt(unnamed, 1).curve
     assert Source.of(curve, "T(2,4)").name is None
     assert Source.of(curve, "m7_4").name == "m7_4"
+
+
+def test_ropes_of_another_type_are_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = refine(attempt(source("3_1"), 0))
+    assert right
+    wrong = replace(right, curve=[component * [1, 1, -1] for component in right.curve])
+    monkeypatch.setattr(search, "refine", lambda *_: wrong)
+    found = run("3_1", 2)
+    assert (found.minima, found.changed) == ([], 1)
+    monkeypatch.setattr(search, "refine", lambda *_: right)
+    monkeypatch.setattr(search, "reseat", lambda *_: wrong)
+    found = run("3_1", 2)
+    assert [minimum.length for minimum in found.minima] == [right.length]
+    assert found.changed == 1
+
+
+def test_a_shorter_shape_is_another() -> None:
+    known = refine(attempt(source("3_1"), 0))
+    assert known
+    found = Search(minima=[known])
+    for length in (known.length * 1.001, known.length * 0.99):
+        found._take(Shape(1, length, known.met[0], known.curve))
+    assert [len(found.shapes), found.minima[0].hits] == [1, known.hits + 1]
+
+
+def test_what_stops_a_polish_is_not_swallowed() -> None:
+    known = refine(attempt(source("3_1"), 0))
+    assert known
+
+    def stop() -> None:
+        raise Stopped("enough")
+
+    with pytest.raises(Stopped, match="enough"):
+        finish(known, 2000, stop)
 
 
 def test_what_watches_can_stop_a_trial(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ import math
 import os
 import re
 import threading
+from collections import defaultdict
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -42,10 +43,11 @@ _ORIGIN = re.compile(r"^# searched: variant (-?\d+), seed (\d+)", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Atlas:
-    """An atlas in a folder."""
+    """An atlas in a folder, which one process at a time may change."""
 
     folder: Path
     lock: threading.Lock = field(default_factory=threading.Lock)
+    knot_locks: dict[str, threading.Lock] = field(default_factory=lambda: defaultdict(threading.Lock))
 
     def path(self, knot: str) -> str:
         """Return where the vertices of a knot are."""
@@ -63,6 +65,10 @@ class Atlas:
         that cannot be read or written, `ValueError` for a rope that does not get tight, or of another type
         than its name says.
         """
+        with self.knot_locks[knot]:
+            return self._take(knot, file, watch)
+
+    def _take(self, knot: str, file: str, watch: Watch) -> Row:
         curve = self._fit(file, watch)
         confirmed_type(knot, curve, file)
         if not self._is_shorter(knot, curve):
@@ -77,12 +83,12 @@ class Atlas:
         again = _polished(fine.curve, FINE_EDGE, watch)
         if again.converged and (again.measures.l_a or math.inf) < (measure(curve).l_a or math.inf):
             curve = _centred(again.curve)
-        confirmed_type(knot, curve, file)
-        with self.lock:
-            if self._is_shorter(knot, curve):
-                self._make()
-                searched = [f"searched: variant {origin[1]}, seed {origin[2]}"] if origin else []
-                formats.write(self.path(knot), curve, [*title(knot, TIGHT, measure(curve)), *searched])
+        for rope in (curve, fine.curve):
+            confirmed_type(knot, rope, file)
+        if self._is_shorter(knot, curve):
+            self._make()
+            searched = [f"searched: variant {origin[1]}, seed {origin[2]}"] if origin else []
+            formats.write(self.path(knot), curve, [*title(knot, TIGHT, measure(curve)), *searched])
         finer = {"n_fine": fine.measures.n, "l_c_fine": fine.measures.l_c}
         row = published.beside({**self.measured(knot), **finer}, published.table())
         self._write(row)
@@ -134,7 +140,8 @@ class Atlas:
         """Measure the file of a knot and compare it with its row. Raises `FormatError` and `ValueError`."""
         row = self.rows().get(knot)
         if not row:
-            raise FormatError(f"{knot}: is not in {self.folder / 'atlas.tsv'}; --update adds it")
+            table = self.folder / "atlas.tsv"
+            raise FormatError(f"{knot}: is no file and not in {table}; --update adds a knot by its name")
         again = self.measured(knot)
         if not self._is_current(row):
             raise ValueError(f"{knot}: its row is not that of its file; --update mends it")

@@ -109,12 +109,16 @@ class SentJob:
         except Stopped as why:
             yield Result(None, f"{job.name}: {why}; what the cluster had done of it is lost")
             return
+        unwritten = set()
         for path, text in texts.items():
             try:
                 formats.save(path, text)
             except FormatError as error:
+                unwritten.add(path)
                 yield Result(None, str(error))
-        yield from results
+        for result in results:
+            lost = result.row and result.row["file"] in unwritten
+            yield replace(result, row={**result.row, "file": None}) if result.row and lost else result
 
 
 @dataclass(frozen=True)

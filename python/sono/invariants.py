@@ -47,7 +47,8 @@ class Crossings:
 def fingerprint(curve: Curve) -> Fingerprint:
     """Return the linking numbers of all pairs, then signatures and |Delta| at t = exp(2 pi i/k), k = 2, 3, 5.
 
-    Curves of one type, with their components in one order, have equal fingerprints; two types seldom do.
+    Curves of one type, with their components in one order, have equal fingerprints. Few passages of strands
+    leave it as it was, but 66 of the 249 knots to 10 crossings share theirs with others; see `homfly`.
     """
     found = diagram(curve)
     roots = [cmath.exp(2j * math.pi / k) for k in (2, 3, 5)]

@@ -57,6 +57,10 @@ class Stopped(Exception):  # noqa: N818 - no error, a request that was followed
     """The run was stopped before its end; what it has is in `Run.best`."""
 
 
+class _TimeIsUp(Stopped):
+    """The time limit of `tighten` was reached."""
+
+
 def as_curve(vertices: ArrayLike | Sequence[ArrayLike]) -> Curve:
     """Return the components, (n_i, 3) each, of an (n, 3) array or a sequence of such. Raises `ValueError`."""
     try:
@@ -121,8 +125,8 @@ def tighten(
     With the method "both" SONO finds shapes in up to `trials` trials and the polish makes the best one exact;
     "sono" and "polish" do without the other. After `time_limit` seconds the best state so far is returned,
     with `converged` False. `settings` replaces some of `default_settings()`, which are SONO's. `watch` is
-    called about ten times a second; KeyboardInterrupt passes through it. Raises `CurveError` for a curve that
-    cannot be tightened, `ValueError` for a wrong n, method or setting.
+    called about ten times a second; what it raises ends the run and passes through. Raises `CurveError` for a
+    curve that cannot be tightened, `ValueError` for a wrong n, method or setting.
     """
     settings = {**(settings or {}), "seed": index(seed)}
     run = Run(as_curve(vertices), [index(n)], settings, method, index(trials))
@@ -131,11 +135,11 @@ def tighten(
     def watch_time(progress: Progress) -> None:
         watch(progress)
         if time.monotonic() > end:
-            raise Stopped
+            raise _TimeIsUp
 
     try:
         return run.tighten(watch_time)
-    except Stopped:
+    except _TimeIsUp:
         return run.best()
 
 

@@ -63,6 +63,9 @@ SAME_RADII = 0.007
 SAME_LENGTH = 2e-4
 """Relative difference in L_a up to which two refined ropes of the same shape count as one minimum."""
 
+SHORTER_SHAPE = 5e-3
+"""A shape shorter than a minimum by more than this share is another, even if their radii are alike."""
+
 SAME_EDGES = 0.02
 """Relative difference of edge lengths up to which the grooves of two ropes are alike."""
 
@@ -228,9 +231,9 @@ def radii_of_gyration(curve: Curve) -> Radii:
 class Search:
     """A search under way, which can be saved after any round and go on later.
 
-    `trials` counts the variants tried so far, of which `changed` ended in another knot type (none should) and
-    `failed` could not be tightened. `shapes` are the shortest unrefined ones and `minima` the refined ones,
-    both shortest first.
+    `trials` counts the variants tried so far, of which `failed` could not be tightened. `changed` counts the
+    ropes that ended in another knot type, in trials or later; none should. `shapes` are the shortest ones
+    that are not refined and `minima` those that are, both shortest first.
     """
 
     seed: int = 0
@@ -252,19 +255,27 @@ class Search:
             ahead = self._tried(source, submit, next(rounds, range(0)))
             for trial in trying:
                 self._take(trial())
-            self._keep(refining)
+            self._keep(refining, source)
             yield
             refining = self._refined(submit, REFINED)
             trying = ahead
-        self._keep(refining)
-        self._keep(self._refined(submit, FINALISTS))
+        self._keep(refining, source)
+        self._keep(self._refined(submit, FINALISTS), source)
         yield
-        reseating = [submit(reseat, minimum) for minimum in self.minima[:RESEATED]]
-        reseated = [minimum() for minimum in reseating]
+        before = self.minima[:RESEATED]
+        reseating = [submit(reseat, minimum) for minimum in before]
+        reseated = [self.confirmed(minimum(), source) for minimum in reseating]
         self.minima = self.minima[RESEATED:]
-        for minimum in reseated:
-            self._merge(minimum)
+        for minimum, again in zip(before, reseated, strict=True):
+            self._merge(again or minimum)
         yield
+
+    def confirmed(self, minimum: Minimum, source: Source) -> Minimum | None:
+        """Return a minimum if it is of the knot's type; count it if it is not."""
+        if fingerprint(minimum.curve) == source.type:
+            return minimum
+        self.changed += 1
+        return None
 
     def rounds(self, trials: int) -> Iterator[range]:
         """Return the rounds from here to so many trials in all."""
@@ -309,7 +320,8 @@ class Search:
         if shape.curve is None:
             return
         for i, minimum in enumerate(self.minima):
-            if any(_alike(shape.radii, radii) for radii in minimum.met):
+            another = shape.length < (1 - SHORTER_SHAPE) * minimum.length
+            if not another and any(_alike(shape.radii, radii) for radii in minimum.met):
                 self.minima[i] = replace(minimum, hits=minimum.hits + 1)
                 return
         for i, other in enumerate(self.shapes):
@@ -321,14 +333,14 @@ class Search:
             self.shapes.append(shape)
         self.shapes = sorted(self.shapes, key=lambda shape: shape.length)[:KEPT]
 
-    def _keep(self, refining: list[Refining]) -> None:
+    def _keep(self, refining: list[Refining], source: Source) -> None:
         """Wait for refined shapes; take each for a new minimum, or for one that is known."""
         for shape, refined in refining:
             found = refined()
             # Other trials may have met the shape while it was refined.
             same = [other for other in self.shapes if _alike(other.radii, shape.radii)]
             self.shapes = [other for other in self.shapes if other not in same]
-            if found:
+            if found and self.confirmed(found, source):
                 self._merge(replace(found, hits=sum(shape.hits for shape in same)))
 
     def _merge(self, found: Minimum) -> None:

@@ -141,9 +141,9 @@ class _Hunt:
         try:
             rounds = takewhile(self.time_is_left, search.rounds(job.trials or ENDLESS))
             for _ in search.run(self.source, rounds, self.submit):
-                if not is_stream(job.output):
-                    self.deliver(search.minima[:1], STOPPED)
                 with suppress(FormatError):  # a full disk may have room again before the search ends
+                    if not is_stream(job.output):
+                        self.deliver(search.minima[:1], STOPPED)
                     self.save()
             minima = self.finished(search.minima[: job.minima])
         except Stopped as why:
@@ -152,7 +152,10 @@ class _Hunt:
         finally:
             self.over = True
         self.delivered = None  # its header is to tell of all trials
-        self.deliver(minima[:1], STOPPED if stopped else None)
+        try:
+            self.deliver(minima[:1], STOPPED if stopped else None)
+        except FormatError as error:
+            yield Result(None, str(error))
         yield from self.rows(minima, stopped)
         yield from self.troubles(minima, stopped)
 
@@ -200,7 +203,8 @@ class _Hunt:
         dl = self.job.dl
         if dl != FINE_EDGE:
             waiting = [self.submit(finish, minimum, round(minimum.length / dl)) for minimum in minima]
-            minima = [minimum() for minimum in waiting]
+            finer = [self.search.confirmed(minimum(), self.source) for minimum in waiting]
+            minima = [new or old for new, old in zip(finer, minima, strict=True)]
         return sorted(minima, key=rank)
 
     def submit(self, function: Callable[..., Any], *args: Any) -> Callable[[], Any]:
@@ -234,8 +238,6 @@ class _Hunt:
             status = status or _status(minimum)
             if self.delivered == (minimum, status) or self.is_worse(minimum):
                 continue
-            if fingerprint(minimum.curve) != self.source.type:
-                raise FormatError(f"{self.job.name}: its shortest rope is of another knot type; not written")
             comments = [
                 *title(self.job.name, status, measure(minimum.curve)),
                 f"searched: variant {minimum.variant}, seed {self.search.seed}, met in {minimum.hits} of "
@@ -266,7 +268,8 @@ class _Hunt:
         search, name = self.search, self.job.name
         unsaved = None
         try:
-            self.save()
+            if not stopped:  # in the middle of a round; the checkpoint has what was before it
+                self.save()
         except FormatError as error:
             unsaved = str(error)
         if stopped:
@@ -283,7 +286,7 @@ class _Hunt:
         if unsaved:
             yield Result(None, f"{name}: {unsaved}")
         if search.changed:
-            yield Result(None, f"{name}: {search.changed} trials changed their knot type and were dropped")
+            yield Result(None, f"{name}: {search.changed} ropes changed their knot type and were dropped")
         if search.failed and minima:
             note = f"{name}: {search.failed} of {search.trials} starts could not be tightened"
             yield Result(None, note=note)

@@ -81,6 +81,8 @@ class Cluster:
         self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
     ) -> Callable[[], Result]:
         """Begin a function on some worker."""
+        from distributed.comm.core import CommClosedError
+
         future = self.client.submit(function, *args, pure=False)
 
         def wait() -> Result:
@@ -90,7 +92,7 @@ class Cluster:
                         result: Result = future.result(timeout=POLL)
                         return result
                     watch()
-            except (OSError, CancelledError) as error:  # nobody else cancels it
+            except (CommClosedError, CancelledError) as error:  # nobody else cancels it
                 raise Stopped("the cluster was lost") from error
             except BaseException:
                 future.cancel()

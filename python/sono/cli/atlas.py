@@ -65,7 +65,8 @@ def command(
 
     For each NAME, by default all prime knots up to 10 crossings, the rope in the atlas is measured and its
     type confirmed by invariants. With --update its search goes on to so many --trials, and what is shorter is
-    taken in; so is a rope from a FILE called NAME.txt or NAME.more.txt.
+    taken in; so is a rope from a FILE called NAME.txt or NAME.more.txt. Only one process at a time may update
+    a folder.
     """
     # Imported here, since numpy would make --help wait.
     from sono import library
@@ -75,12 +76,14 @@ def command(
     atlas = Atlas(Path(folder))
     if "-" in sources:
         raise click.UsageError("standard input has no name; give a file NAME.txt")
+    if not update and not Path(folder, "atlas.tsv").exists():
+        raise click.UsageError(f"{folder}/atlas.tsv: no such file; --folder says where, --update makes one")
     names = sources or [row["knot"] for row in library.table("knots")]
     with options.workers(jobs, cluster) as workers:
         work = [
             _AtlasJob(
                 atlas,
-                options.knot_name(source).split(".")[0],
+                options.knot_name(source).split(".")[0] if Path(source).is_file() else source,
                 SearchJob(
                     source,
                     source,

@@ -1,4 +1,4 @@
-"""What `sono tighten` and `sono search` share: jobs done side by side, their rows, Ctrl-C."""
+"""What `sono tighten`, `sono search` and `sono atlas` share: jobs done side by side, their rows, Ctrl-C."""
 
 import signal
 import sys
