@@ -79,8 +79,8 @@ def test_a_cluster_gives_what_threads_give(folder: Path, sono: Sono, cluster: Cl
     )
     near = sono("tighten", *arguments, "-o", "near/", "--contacts", "near/", input=text)
     assert far.exit_code == near.exit_code == 1
-    assert sorted(far.stdout.splitlines()) == sorted(near.stdout.splitlines())
     assert sorted(far.stderr.splitlines()) == sorted(near.stderr.splitlines())
+    assert sorted(far.stdout.splitlines()) == sorted(near.stdout.splitlines())
     assert "nowhere.txt: cannot be read" in far.stderr
     names = sorted(os.listdir("near"))
     assert sorted(os.listdir("far")) == names

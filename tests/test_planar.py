@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sono import measure
 from sono.invariants import crossings, fingerprint
 from sono.library import start
 from sono.planar import Diagram, lifted
@@ -32,6 +33,11 @@ def test_strands_are_apart() -> None:
     arc = np.minimum(arc, edges.sum() - arc)
     distance = np.linalg.norm(points[:, None] - points, axis=2)
     assert distance[arc > 4].min() > 0.5
+
+
+def test_where_every_outer_face_leaves_others_flat_the_shortest_rope_is_taken() -> None:
+    # With that of the most even lines it is 10,409 radii long, and jams when it collapses.
+    assert measure(start("10_6", -12)).l_p < 3000
 
 
 def test_seeds_differ() -> None:

@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from sono._core import measure
 from sono.closures import Curve, divided
 
 Diagram: TypeAlias = list[tuple[int, int, int, int]]
@@ -25,7 +26,11 @@ ROUNDS = 12
 """Rounds in which long lines get more weight; the drawing with the most even lines is taken."""
 
 UNEVEN = 25
-"""Ratio of the longest line to the shortest up to which a drawing is taken; a rope in others is thin."""
+"""Ratio of the longest line to the shortest up to which a drawing is taken."""
+
+LONGEST = 2000
+"""Ropelength up to which a drawing is taken; one in a hundred is longer. A rope in flat triangles is thin: at
+a length of 10,000 it takes ten seconds to collapse, if it does."""
 
 PULL = 0.3
 """The power of its length by which a line's weight grows in a round."""
@@ -35,7 +40,8 @@ def lifted(diagram: Diagram, seed: int) -> Curve:
     """Return the knot of a planar diagram without nugatory crossings.
 
     The seed chooses the outer face and draws the first weights. The shortest line is 1 long, strands cross 2
-    apart, and the next face is taken instead of one that leaves the others too little room.
+    apart, and the next face is taken instead of one that leaves the others too little room; where all do, the
+    drawing with the shortest rope.
     """
     around = faces(diagram)
     drawings = []
@@ -43,16 +49,21 @@ def lifted(diagram: Diagram, seed: int) -> Curve:
         lines, boundary = _triangulated(diagram, around, int(outer))
         points = _drawn(lines, boundary, np.random.default_rng(seed))
         lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
-        drawings.append((lengths.max() / lengths.min(), points / lengths.min()))
-        if drawings[-1][0] < UNEVEN:
-            break
-    points = min(drawings, key=lambda drawing: drawing[0])[1]
+        curve = _raised(diagram, points / lengths.min())
+        drawings.append((measure([curve]).l_p, curve))
+        if lengths.max() < UNEVEN * lengths.min() and drawings[-1][0] < LONGEST:
+            return [curve]
+    return [min(drawings, key=lambda drawing: drawing[0])[1]]
+
+
+def _raised(diagram: Diagram, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the knot (n, 3) above a drawing of its diagram."""
     corners = []
     for edge in range(1, 2 * len(diagram) + 1):
         crossing = _left_by(diagram, edge)
         z = -1 if diagram[crossing][0] == edge else 1
         corners += [[*points[len(diagram) + edge - 1], 0], [*points[crossing], z]]
-    return [divided(np.array(corners, float), 0.6)]
+    return divided(np.array(corners, float), 0.6)
 
 
 def _left_by(diagram: Diagram, edge: int) -> int:

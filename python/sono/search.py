@@ -44,6 +44,9 @@ ANNEAL_EDGES = (0.8, 1.2)
 OFFSETS = 2
 """Offsets along the rope from which a shape is refined; the shortest result counts."""
 
+MOST_BEADS = 10_000
+"""Beads of a collapsed rope up to which a trial goes on. A thin start may jam at once; the rest is hours."""
+
 ROUND = 8
 REFINED = 2
 """After each round of so many trials so many of its shapes are refined."""
@@ -154,11 +157,13 @@ class Minimum:
 
 
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
-    """Make one trial. A start that cannot be drawn or tightened gives a shape without a curve."""
+    """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
     try:
         collapsed = _done(Tightener(source.start(variant, watch), "collapse", 0, "{}"), watch)
         edge = _spread(*ANNEAL_EDGES, variant)
         n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
+        if n > MOST_BEADS:
+            return Shape(variant)
         anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
         settings = json.dumps(anneal | {"seed": abs(variant)})
         annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)

@@ -94,8 +94,10 @@ class Cluster:
                     watch()
             except (CommClosedError, CancelledError) as error:  # nobody else cancels it
                 raise Stopped("the cluster was lost") from error
-            except BaseException:
+            except BaseException as error:
                 future.cancel()
+                if isinstance(error, OSError):  # here it would mean that standard output is full
+                    raise RuntimeError(f"on the cluster: {error}") from error
                 raise
 
         return wait
