@@ -29,7 +29,8 @@ fn finish(mut tightener: Tightener) -> Curve {
 /// A trefoil tightened at n = 480.
 fn tight_trefoil() -> Curve {
     let settings = Settings { anneal_sweeps: 50_000, settle_sweeps: 200, ..Default::default() };
-    let mut curve = finish(Tightener::collapse(&loose_trefoil(), settings).expect("embedded"));
+    let mut curve =
+        finish(Tightener::collapse(&loose_trefoil(), 1000, settings).expect("embedded"));
     curve = finish(Tightener::anneal(&curve, 120, settings).expect("fine enough"));
     for n in [120, 240, 480] {
         curve = finish(Tightener::settle(&curve, n, settings).expect("fine enough"));

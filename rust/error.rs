@@ -53,11 +53,22 @@ pub enum Error {
     },
     /// The rope around the curve is too thin for its length to be filled with beads.
     #[error(
-        "the curve comes so close to itself that a rope around it needs over {limit} beads; \
-         move its strands apart"
+        "the curve comes so close to itself that a rope around it needs over {limit} beads; move its \
+         strands apart, or let the method both do it"
     )]
     TooThin {
         /// The largest number of beads that is tried.
+        limit: usize,
+    },
+    /// What is left when all vertices that can go have been removed is still beyond all means.
+    #[error(
+        "the curve is so entangled that {sticks} vertices are left of its simplest polygon; \
+         {limit} is the most that can be loosened"
+    )]
+    TooComplex {
+        /// Vertices of the simplified polygon.
+        sticks: usize,
+        /// The most that is tried.
         limit: usize,
     },
     /// Edges so long that even neighbouring beads would have to be 2 R apart: see

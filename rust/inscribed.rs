@@ -36,8 +36,9 @@ struct Piece {
     /// Direction of the edge after the vertex.
     onward: DVec3,
     straight: f64,
-    /// Arclength at `start`.
+    /// Arclength at `start`, and the angle by which the curve has turned before.
     at: f64,
+    turned: f64,
 }
 
 impl Piece {
@@ -89,12 +90,13 @@ impl Inscribed {
     }
 
     /// The curve of `n[c]` vertices on each component, all chords of a component equal, the first
-    /// vertex `shift` edges after the start; and the largest ratio of an arc to its chord.
+    /// vertex `shift` edges after the start; and the largest angle by which the curve turns in all
+    /// above a chord.
     pub fn sample(&self, n: &[usize], shift: f64) -> (Curve, f64) {
         let sampled: Vec<_> =
             self.components.iter().zip(n).map(|(p, &n)| equal_chords(p, n, shift)).collect();
-        let ratio = sampled.iter().map(|(_, ratio)| *ratio).fold(1., f64::max);
-        (Curve::from_components(sampled.into_iter().map(|(v, _)| v).collect()), ratio)
+        let turn = sampled.iter().map(|(_, turn)| *turn).fold(0., f64::max);
+        (Curve::from_components(sampled.into_iter().map(|(v, _)| v).collect()), turn)
     }
 }
 
@@ -119,17 +121,16 @@ pub fn refine(curve: &Curve, n: usize, shift: f64) -> Curve {
 
 /// Edge length of a loose rope, as a multiple of its radius.
 const LOOSE_EDGE: f64 = 0.5;
-/// The largest number of beads a loose rope may have.
-const MOST_BEADS: usize = 200_000;
-/// Largest ratio of arc to chord at which a sampled curve is taken to follow K_P.
-const MOST_BULGE: f64 = 1.05;
+/// Largest angle by which K_P may turn in all above a chord: it then stays within a fifth of the
+/// chord's length from it, and has no room for a knot.
+const MOST_TURN: f64 = 0.7;
 
 /// A rope of the curve's knot type, from any embedded polygon: K_P sampled with edges at most half
 /// as long as its thickness R_s.
 ///
 /// # Errors
-/// [`Error::TooThin`] where that takes over 200,000 beads.
-pub fn rope_curve(curve: &Curve) -> Result<Curve> {
+/// [`Error::SelfCrossing`]; [`Error::TooThin`] where that takes over `most` beads.
+pub fn rope_curve(curve: &Curve, most: usize) -> Result<Curve> {
     check_embedded(curve)?;
     let given = measure(curve);
     let inscribed = match given.r_c {
@@ -140,13 +141,13 @@ pub fn rope_curve(curve: &Curve) -> Result<Curve> {
     let mut dl = LOOSE_EDGE * given.r_c.unwrap_or(given.dl);
     loop {
         let n = (lengths.iter().sum::<f64>() / dl).ceil();
-        if n > MOST_BEADS as f64 {
-            return Err(Error::TooThin { limit: MOST_BEADS });
+        if n > most as f64 {
+            return Err(Error::TooThin { limit: most });
         }
         let shares = share_out((n as usize).max(12 * lengths.len()), &lengths);
-        let (sampled, bulge) = inscribed.sample(&shares, 0.);
+        let (sampled, turn) = inscribed.sample(&shares, 0.);
         let r_s = measure(&sampled).r_s;
-        if dl <= 1.1 * LOOSE_EDGE * r_s && bulge <= MOST_BULGE {
+        if dl <= 1.1 * LOOSE_EDGE * r_s && turn <= MOST_TURN {
             return Ok(sampled);
         }
         dl = (0.7 * dl).min(LOOSE_EDGE * r_s).max(0.25 * dl);
@@ -188,7 +189,7 @@ fn clearances(curve: &Curve) -> Vec<f64> {
 
 fn pieces(v: &[DVec3], tangents: &[f64]) -> Vec<Piece> {
     let n = v.len();
-    let mut at = 0.;
+    let (mut at, mut turned) = (0., 0.);
     (0..n)
         .map(|i| {
             let forward = (v[i] - v[(i + n - 1) % n]).normalize();
@@ -206,8 +207,10 @@ fn pieces(v: &[DVec3], tangents: &[f64]) -> Vec<Piece> {
                 onward,
                 straight: (after.length() - t - tangents[(i + 1) % n]).max(0.),
                 at,
+                turned,
             };
             at += piece.length();
+            turned += angle;
             piece
         })
         .collect()
@@ -222,7 +225,7 @@ fn equal_chords(pieces: &[Piece], n: usize, shift: f64) -> (Vec<DVec3>, f64) {
     let around = length(pieces);
     let first = around / n as f64;
     let start = shift * first;
-    let mut walk = Walk { pieces, around, points: Vec::with_capacity(n), ratio: 1. };
+    let mut walk = Walk { pieces, around, points: Vec::with_capacity(n), turn: 0. };
     let mut chords = [first, first * (1. - 1e-3)];
     let mut gaps = chords.map(|chord| walk.gap(start, chord, n));
     for _ in 0..50 {
@@ -234,40 +237,51 @@ fn equal_chords(pieces: &[Piece], n: usize, shift: f64) -> (Vec<DVec3>, f64) {
         chords = [b, chord];
         gaps = [gap_b, walk.gap(start, chord, n)];
     }
-    (walk.points, walk.ratio)
+    (walk.points, walk.turn)
 }
 
 struct Walk<'a> {
     pieces: &'a [Piece],
     around: f64,
     points: Vec<DVec3>,
-    ratio: f64,
+    /// The largest angle by which the curve turns above a chord.
+    turn: f64,
 }
 
 impl Walk<'_> {
     /// Takes `n` steps of equal chords and returns by how much arclength they lead too far.
     fn gap(&mut self, start: f64, chord: f64, n: usize) -> f64 {
         self.points.clear();
-        self.ratio = 1.;
+        self.turn = 0.;
         let mut s = start;
         let mut at = self.pieces.partition_point(|p| p.at <= start).max(1) - 1;
         let mut point = self.point(&mut at, s);
+        let mut turned = self.turned(at, s);
         for _ in 0..n {
             self.points.push(point);
-            let from = s;
+            let from = (s, turned);
             s += chord;
             // The chord grows as fast as the arc, up to second order, so this converges quickly.
             for _ in 0..40 {
                 point = self.point(&mut at, s);
                 let missing = chord - point.distance(self.points[self.points.len() - 1]);
-                s = (s + missing).clamp(from + chord, from + 3. * chord);
+                s = (s + missing).clamp(from.0 + chord, from.0 + 3. * chord);
                 if missing.abs() <= 1e-15 * chord {
                     break;
                 }
             }
-            self.ratio = self.ratio.max((s - from) / chord);
+            turned = self.turned(at, s);
+            self.turn = self.turn.max(turned - from.1);
         }
         s - start - self.around
+    }
+
+    /// The angle by which the curve has turned from its start to arclength `s`, in the piece `at`.
+    fn turned(&self, at: usize, s: f64) -> f64 {
+        let turns = (s / self.around).floor();
+        let (piece, last) = (&self.pieces[at], &self.pieces[self.pieces.len() - 1]);
+        let on_arc = ((s - turns * self.around - piece.at) / piece.arc).clamp(0., 1.);
+        turns * (last.turned + last.angle) + piece.turned + on_arc * piece.angle
     }
 
     /// The point at arclength `s`; `at` remembers the piece, since steps go forward.

@@ -5,25 +5,32 @@
 //! `error, segments, curve <- neighbours <- measures <- inscribed, embedded, procedures <- rope <- tighten
 //! <- polish <- python`.
 
+pub mod collapse;
 pub mod curve;
 pub mod embedded;
 pub mod error;
 pub mod inscribed;
+pub mod loosen;
 pub mod measures;
+pub mod modular;
 pub mod neighbours;
 pub mod polish;
 pub mod procedures;
+pub mod projection;
 #[cfg(feature = "python")]
 mod python;
 pub mod rope;
 pub mod segments;
 pub mod settings;
+pub mod sticks;
 pub mod tighten;
 
+pub use collapse::Collapse;
 pub use curve::Curve;
 pub use embedded::check_embedded;
 pub use error::{Error, Result};
 pub use inscribed::refine;
+pub use loosen::{Loosening, loosened, simplified};
 pub use measures::{Measures, measure};
 pub use polish::Polish;
 pub use settings::Settings;

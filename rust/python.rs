@@ -30,7 +30,10 @@ fn to_python(error: Error) -> PyErr {
         Error::SelfCrossing { component, vertex, other_component, other_vertex } => {
             vec![(component, Some(vertex)), (other_component, Some(other_vertex))]
         }
-        Error::Empty | Error::TooThin { .. } | Error::TooCoarse { .. } => vec![],
+        Error::Empty
+        | Error::TooThin { .. }
+        | Error::TooComplex { .. }
+        | Error::TooCoarse { .. } => vec![],
     };
     let raised = CurveError::new_err(error.to_string());
     Python::attach(|py| raised.value(py).setattr("places", places)).map_or_else(|e| e, |()| raised)
@@ -134,6 +137,51 @@ fn refine<'py>(
     arrays(py, &refined)
 }
 
+/// The same curve with as few vertices as triangle moves leave, by exact isotopy.
+#[pyfunction]
+fn simplify<'py>(
+    py: Python<'py>,
+    components: Arrays<'py>,
+) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+    let curve = curve(components)?;
+    let simple = py.detach(|| crate::simplified(&curve)).map_err(to_python)?;
+    arrays(py, &simple)
+}
+
+type CrossingArrays<'py> =
+    (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
+
+/// The crossings seen from above: places of the upper and lower strands, whether right-handed.
+#[pyfunction]
+fn crossings<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<CrossingArrays<'py>> {
+    let curve = curve(components)?;
+    let found = py.detach(|| crate::projection::crossings(&curve));
+    Ok((
+        PyArray1::from_iter(py, found.iter().map(|c| c.over)),
+        PyArray1::from_iter(py, found.iter().map(|c| c.under)),
+        PyArray1::from_iter(py, found.iter().map(|c| c.right)),
+    ))
+}
+
+/// The determinant of an n x n matrix of entries (row, column, value) modulo `PRIME`.
+#[pyfunction]
+fn determinant(py: Python<'_>, n: usize, entries: Vec<(usize, usize, u64)>) -> PyResult<u64> {
+    if entries.iter().any(|&(i, j, _)| i.max(j) >= n) {
+        return Err(PyValueError::new_err("an entry lies outside the matrix"));
+    }
+    Ok(py.detach(|| crate::modular::determinant(n, &entries)))
+}
+
+#[pyfunction]
+fn loosen<'py>(
+    py: Python<'py>,
+    components: Arrays<'py>,
+) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+    let curve = curve(components)?;
+    let loose = py.detach(|| crate::loosened(&curve)).map_err(to_python)?;
+    arrays(py, &loose)
+}
+
 #[pyfunction]
 fn default_settings() -> String {
     serde_json::to_string(&crate::Settings::default()).expect("plain numbers")
@@ -157,6 +205,7 @@ impl Status {
         Ok(Self {
             outcome: name_of(status.outcome),
             stage: match status.stage {
+                Stage::Loosen => "loosen",
                 Stage::Collapse => "collapse",
                 Stage::Anneal => "anneal",
                 Stage::Reanneal => "reanneal",
@@ -170,6 +219,49 @@ impl Status {
             dispersion: status.met.dispersion,
             best: Py::new(py, Measures::from(status.best))?,
         })
+    }
+}
+
+#[pyclass(module = "sono._core")]
+struct Collapse(crate::Collapse);
+
+#[pymethods]
+impl Collapse {
+    #[new]
+    fn new(py: Python<'_>, components: Arrays<'_>, settings: &str) -> PyResult<Self> {
+        let curve = curve(components)?;
+        let settings = settings_from_json(settings)?;
+        py.detach(|| crate::Collapse::new(&curve, settings)).map(Self).map_err(to_python)
+    }
+
+    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
+        let budget = budget(seconds)?;
+        let status = py.detach(|| self.0.advance(budget)).map_err(to_python)?;
+        Status::new(py, &status)
+    }
+
+    fn status(&self, py: Python<'_>) -> PyResult<Status> {
+        Status::new(py, &self.0.status())
+    }
+
+    fn loosened(&self) -> bool {
+        self.0.loosened()
+    }
+
+    fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+        arrays(py, &self.0.best())
+    }
+
+    fn state(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| serde_json::to_string(&self.0))
+            .map_err(|e| PyValueError::new_err(e.to_string()))
+    }
+
+    #[staticmethod]
+    fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
+        py.detach(|| serde_json::from_str(state))
+            .map(Self)
+            .map_err(|e| PyValueError::new_err(format!("not a state of a Collapse: {e}")))
     }
 }
 
@@ -189,7 +281,6 @@ impl Tightener {
         let curve = curve(components)?;
         let settings = settings_from_json(settings)?;
         py.detach(|| match stage {
-            "collapse" => crate::Tightener::collapse(&curve, settings),
             "anneal" => crate::Tightener::anneal(&curve, n, settings),
             "reanneal" => crate::Tightener::reanneal(&curve, n, settings),
             _ => crate::Tightener::settle(&curve, n, settings),
@@ -350,7 +441,7 @@ fn settings_from_json(settings: &str) -> PyResult<crate::Settings> {
 mod _core {
     #[pymodule_export]
     use super::{
-        CurveError, Measures, Polish, PolishStatus, Status, Tightener, balance, default_settings,
-        measure, refine,
+        Collapse, CurveError, Measures, Polish, PolishStatus, Status, Tightener, balance,
+        crossings, default_settings, determinant, loosen, measure, refine, simplify,
     };
 }

@@ -26,6 +26,22 @@ pub fn distance(a: [DVec3; 2], b: [DVec3; 2]) -> f64 {
     inner.min(from_a).min(to_point(a, b[0])).min(to_point(a, b[1]))
 }
 
+/// Where two segments come closest: how far along each, from 0 to 1.
+pub fn closest(a: [DVec3; 2], b: [DVec3; 2]) -> [f64; 2] {
+    let (u, v, w) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
+    let (uu, uv, vv) = (u.length_squared(), u.dot(v), v.length_squared());
+    let (uw, vw) = (u.dot(w), v.dot(w));
+    let squared = uu * vv - uv * uv;
+    let s = if squared > PARALLEL * uu * vv {
+        ((uv * vw - vv * uw) / squared).clamp(0., 1.)
+    } else {
+        0.
+    };
+    // The nearest point of b to that of a, and if it lies beyond an end, of a to this end.
+    let t = ((uv * s + vw) / vv.max(f64::MIN_POSITIVE)).clamp(0., 1.);
+    [((uv * t - uw) / uu.max(f64::MIN_POSITIVE)).clamp(0., 1.), t]
+}
+
 /// Distance of a segment to a point.
 pub fn to_point(segment: [DVec3; 2], point: DVec3) -> f64 {
     let along = segment[1] - segment[0];

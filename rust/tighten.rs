@@ -25,7 +25,7 @@
 //! });
 //! let curve = Curve::new(vec![trefoil.collect()])?;
 //! let settings = Settings { anneal_sweeps: 20_000, ..Default::default() };
-//! let mut loose = Tightener::collapse(&curve, settings)?;
+//! let mut loose = Tightener::collapse(&curve, 1000, settings)?;
 //! while loose.step() == Outcome::Running {}
 //! let mut tight = Tightener::anneal(&loose.best(), 60, settings)?;
 //! while tight.step() == Outcome::Running {}
@@ -75,7 +75,9 @@ const BURST: u64 = 1000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
-    /// From any embedded curve to a jammed rope.
+    /// From any embedded curve to one that holds a thick rope: [`crate::Loosening`].
+    Loosen,
+    /// From a loose to a jammed rope.
     Collapse,
     /// Lowers the tolerance from large to small.
     Anneal,
@@ -145,13 +147,14 @@ pub struct Tightener {
 }
 
 impl Tightener {
-    /// Collapses any embedded curve of any scale; the number of vertices is chosen by itself.
+    /// Collapses an embedded curve of any scale that holds a rope of at most `most` beads; their
+    /// number is chosen by itself. See [`crate::Collapse`] for any other.
     ///
     /// # Errors
     /// [`Error::Setting`], [`Error::SelfCrossing`], [`Error::TooThin`].
-    pub fn collapse(curve: &Curve, settings: Settings) -> Result<Self> {
+    pub fn collapse(curve: &Curve, most: usize, settings: Settings) -> Result<Self> {
         settings.check()?;
-        let mut rope = Rope::new(rope_curve(curve)?);
+        let mut rope = Rope::new(rope_curve(curve, most)?);
         jitter(&mut rope, settings.seed);
         Ok(Self::new(rope, Stage::Collapse, u64::MAX, COLLAPSED, settings))
     }
@@ -279,7 +282,9 @@ impl Tightener {
     /// The violation tolerated at this moment.
     fn tolerance(&self) -> f64 {
         let last = match self.stage {
-            Stage::Collapse => return if self.collapsing() { COLLAPSED } else { EASED },
+            Stage::Loosen | Stage::Collapse => {
+                return if self.collapsing() { COLLAPSED } else { EASED };
+            }
             Stage::Anneal | Stage::Reanneal => ANNEALED.min(self.first_tolerance),
             Stage::Settle => 0.5 * self.settings.tolerance,
         };

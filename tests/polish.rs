@@ -13,7 +13,7 @@ use sono::{Curve, Error, Outcome, Polish, Tightener, measure};
 
 /// A rough trefoil: collapsed only.
 fn rough() -> Curve {
-    finish(Tightener::collapse(&torus(2., 3., 100), quick()).unwrap()).best().clone()
+    finish(Tightener::collapse(&torus(2., 3., 100), 1000, quick()).unwrap()).best().clone()
 }
 
 fn polished(curve: &Curve, n: usize) -> Polish {

@@ -9,8 +9,10 @@ import pytest
 
 from sono.closures import braid, chain, mirror, torus
 from sono.invariants import (
+    ORDERS,
     Floats,
     alexander,
+    alexander_modulo,
     crossings,
     diagram,
     fingerprint,
@@ -112,7 +114,7 @@ def test_unchanged_by_the_view(name: str) -> None:
         found = crossings(reduced, direction)
         assert linking_matrix(found)[np.triu_indices(len(reduced), 1)].tolist() == list(expected[0])
         assert tuple(signature(found, t) for t in ROOTS) == expected[1]
-        assert [alexander(found, t) for t in ROOTS] == pytest.approx(list(expected[2]), abs=1e-4)
+        assert tuple(alexander_modulo(found, k) for k in ORDERS) == expected[2]
 
 
 @pytest.mark.parametrize("name", SOME)
@@ -143,7 +145,7 @@ def test_simplify_keeps_the_type_of_random_polygons() -> None:
 def test_simplify_leaves_little() -> None:
     assert [len(component) for component in simplify(start("unknot"))] == [3]
     assert len(simplify(start("3_1"))[0]) < 10
-    assert len(simplify(torus(2, 59))[0]) < 120
+    assert len(simplify(torus(2, 59))[0]) < 2.5 * 59
 
 
 def test_the_wrong_type_is_noticed() -> None:

@@ -8,7 +8,7 @@ use sono::procedures::{control_curvature, equalize_edges, least_index_distance, 
 use sono::{Curve, Error, Outcome, Settings, Tightener, measure};
 
 fn loose() -> Curve {
-    finish(Tightener::collapse(&torus(2., 3., 100), quick()).unwrap()).best().clone()
+    finish(Tightener::collapse(&torus(2., 3., 100), 1000, quick()).unwrap()).best().clone()
 }
 
 fn tight(n: usize, settings: Settings) -> Tightener {
@@ -81,7 +81,7 @@ fn a_fine_rope_is_not_knotted_by_its_jitter() {
 #[test]
 fn settings_out_of_range_are_named() {
     let wrong = Settings { c_1: 0.7, ..Default::default() };
-    let error = Tightener::collapse(&torus(2., 3., 60), wrong).unwrap_err();
+    let error = Tightener::collapse(&torus(2., 3., 60), 1000, wrong).unwrap_err();
     assert!(error.to_string().contains("c_1 = 0.7"), "{error}");
 }
 

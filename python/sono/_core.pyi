@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "Collapse",
     "CurveError",
     "Measures",
     "Polish",
@@ -16,9 +17,13 @@ __all__ = [
     "Status",
     "Tightener",
     "balance",
+    "crossings",
     "default_settings",
+    "determinant",
+    "loosen",
     "measure",
     "refine",
+    "simplify",
 ]
 
 _Components: TypeAlias = list[NDArray[np.float64]]
@@ -26,7 +31,7 @@ _Outcome: TypeAlias = Literal["running", "tight", "stuck"]
 _Forces: TypeAlias = tuple[
     NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], float
 ]
-_Stage: TypeAlias = Literal["collapse", "anneal", "reanneal", "settle"]
+_Stage: TypeAlias = Literal["loosen", "collapse", "anneal", "reanneal", "settle"]
 
 class CurveError(ValueError):
     """A curve that cannot be used, and the places: (component, vertex), vertex None for a whole component."""
@@ -88,8 +93,21 @@ class Status:
     def best(self) -> Measures: ...
 
 @final
+class Collapse:
+    """From any embedded curve to a jammed rope; a thin or entangled curve is loosened first."""
+
+    def __new__(cls, components: _Components, settings: str) -> Collapse: ...
+    def advance(self, seconds: float) -> Status: ...
+    def status(self) -> Status: ...
+    def loosened(self) -> bool: ...
+    def best(self) -> _Components: ...
+    def state(self) -> str: ...
+    @staticmethod
+    def restore(state: str) -> Collapse: ...
+
+@final
 class Tightener:
-    """One stage of SONO on n vertices in all (n is not used by "collapse"); `settings` is JSON."""
+    """One stage of SONO on n vertices in all; `settings` is JSON."""
 
     def __new__(
         cls,
@@ -143,3 +161,9 @@ def balance(components: _Components) -> _Forces: ...
 def measure(components: _Components) -> Measures: ...
 def refine(components: _Components, n: int) -> _Components: ...
 def default_settings() -> str: ...
+def crossings(
+    components: _Components,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]: ...
+def determinant(n: int, entries: list[tuple[int, int, int]]) -> int: ...
+def loosen(components: _Components) -> _Components: ...
+def simplify(components: _Components) -> _Components: ...

@@ -8,21 +8,26 @@ sharper and needs the extra sono[identify]. The single invariants take a project
 import cmath
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sono import _core
+
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int64]
 Curve: TypeAlias = list[Floats]
-Fingerprint: TypeAlias = tuple[tuple[int, ...], tuple[int, ...], tuple[float, ...]]
+Fingerprint: TypeAlias = tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]
 
-SEED = 20010917
-VIEW = np.random.default_rng(SEED).normal(size=3)
-TINY = 1e-15
-"""Well above the rounding error of a volume in a curve of size 1."""
+ORDERS = (2, 3, 5)
+"""Orders of the roots of unity at which a fingerprint has signatures and Alexander polynomials."""
+
+PRIME, GENERATOR = 2_147_482_951, 6
+"""The modulus of `_core.determinant`, and a generator of its multiplicative group."""
+
+MOST_CROSSINGS = 1000
+"""Crossings up to which a projection is taken; signatures of more would take seconds."""
 
 
 @dataclass(frozen=True)
@@ -45,16 +50,18 @@ class Crossings:
 
 
 def fingerprint(curve: Curve) -> Fingerprint:
-    """Return the linking numbers of all pairs, then signatures and |Delta| at t = exp(2 pi i/k), k = 2, 3, 5.
+    """Return the linking numbers of all pairs, signatures, and Alexander polynomials modulo a prime.
 
-    Curves of one type, with their components in one order, have equal fingerprints. Few passages of strands
-    leave it as it was, but 66 of the 249 knots to 10 crossings share theirs with others; see `homfly`.
+    The signatures are those at exp(2 pi i/k), k = 2, 3, 5. The polynomial, at a root t of unity of the same
+    orders modulo `PRIME`, is known up to a factor of plus or minus a power of t, which the power 2 k removes.
+    Curves of one type, with their components in one order, have equal fingerprints, however thin they are.
+    Few passages of strands leave it as it was, but 66 of the 249 knots to 10 crossings share theirs with
+    others; see `homfly`. Raises `ValueError` for a curve of over `MOST_CROSSINGS` crossings.
     """
     found = diagram(curve)
-    roots = [cmath.exp(2j * math.pi / k) for k in (2, 3, 5)]
     linking = linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()
-    delta = [round(alexander(found, t), 4) for t in roots]
-    return tuple(linking), tuple(signature(found, t) for t in roots), tuple(delta)
+    signatures = tuple(signature(found, cmath.exp(2j * math.pi / k)) for k in ORDERS)
+    return tuple(linking), signatures, tuple(alexander_modulo(found, k) for k in ORDERS)
 
 
 def homfly(curve: Curve) -> str:
@@ -84,8 +91,18 @@ def planar_diagram(found: Crossings) -> list[tuple[int, int, int, int]]:
 
 
 def diagram(curve: Curve) -> Crossings:
-    """Return a projection of `curve` with few crossings."""
-    return crossings(simplify(curve))
+    """Return a projection of `curve` with few crossings. Raises `ValueError` if there are too many.
+
+    The curve is simplified by exact isotopies, and if it is entangled loosened as well.
+    """
+    for made_simple in (_core.simplify, _core.loosen):
+        simple = made_simple(curve)
+        # Turning the axes is exact.
+        views = (_seen([np.roll(component, turn, axis=1) for component in simple]) for turn in range(3))
+        found = min(views, key=lambda found: len(found.sign))
+        if len(found.sign) <= MOST_CROSSINGS:
+            return found
+    raise ValueError(f"the curve is too entangled: of its crossings {len(found.sign)} are left")
 
 
 def linking_matrix(found: Crossings) -> Ints:
@@ -102,16 +119,40 @@ def linking_matrix(found: Crossings) -> Ints:
 def alexander(found: Crossings, t: complex) -> float:
     """Return |Delta(t)| for |t| = 1: the Alexander polynomial, for links the one of a single variable.
 
-    It is a minor of the Fox matrix of the Wirtinger presentation (R. Crowell and R. Fox, Introduction to Knot
-    Theory, 1963). At t = -1 it is the determinant of the knot; it is 0 for split links.
+    At t = -1 it is the determinant of the knot; it is 0 for split links.
+    """
+    fox = _fox(found)
+    if fox is None:
+        return 0.0
+    count, rows, columns, values = fox
+    matrix = np.zeros((count, count), complex)
+    np.add.at(matrix, (rows, columns), values @ [1, t])
+    return float(abs(np.linalg.det(matrix)))
+
+
+def alexander_modulo(found: Crossings, k: int) -> int:
+    """Return Delta(t)^2k for a root t of unity of order k modulo `PRIME`."""
+    fox = _fox(found)
+    if fox is None:
+        return 0
+    count, rows, columns, values = fox
+    t = pow(GENERATOR, (PRIME - 1) // k, PRIME)
+    entries = zip(rows.tolist(), columns.tolist(), (values @ [1, t] % PRIME).tolist(), strict=True)
+    return pow(_core.determinant(count, list(entries)), 2 * k, PRIME)
+
+
+def _fox(found: Crossings) -> tuple[int, Ints, Ints, Ints] | None:
+    """Return a minor of the Fox matrix of the Wirtinger presentation, if it is not 0: its size and entries.
+
+    An entry has a row, a column and a value a + b t, as (a, b). Source: R. Crowell and R. Fox, Introduction
+    to Knot Theory, 1963.
     """
     unders = np.sort(found.under)
     first = np.searchsorted(unders, found.bounds)
     # Each component is cut where it passes under; one that never does is a single arc.
     arcs = np.maximum(np.diff(first), 1)
-    total = int(arcs.sum())
-    if total > max(1, len(unders)):
-        return 0.0
+    if arcs.sum() > max(1, len(unders)):
+        return None
 
     def arc(place: Floats, passed: int) -> Ints:
         component = found.component(place)
@@ -119,12 +160,15 @@ def alexander(found: Crossings, t: complex) -> float:
         numbered: Ints = np.cumsum(arcs)[component] - arcs[component] + rank % arcs[component]
         return numbered
 
-    fox = np.zeros((len(unders), total), complex)
-    row, right = np.arange(len(unders)), found.sign > 0
-    np.add.at(fox, (row, arc(found.over, 0)), np.where(right, 1 - t, t - 1))
-    np.add.at(fox, (row, arc(found.under, 0)), np.where(right, t, 1))
-    np.add.at(fox, (row, arc(found.under, 1)), np.where(right, -1, -t))
-    return float(abs(np.linalg.det(fox[1:, 1:])))
+    rows = np.tile(np.arange(len(unders)), 3)
+    columns = np.concatenate([arc(found.over, 0), arc(found.under, 0), arc(found.under, 1)])
+    # 1 - t, t and -1 at a right-handed crossing, t - 1, 1 and -t at a left-handed one.
+    sign, right = found.sign, found.sign > 0
+    ones = np.concatenate([sign, np.where(right, 0, 1), np.where(right, -1, 0)])
+    ts = np.concatenate([-sign, np.where(right, 1, 0), np.where(right, 0, -1)])
+    kept = (rows > 0) & (columns > 0)
+    values = np.column_stack([ones, ts])[kept]
+    return max(len(unders) - 1, 0), rows[kept] - 1, columns[kept] - 1, values
 
 
 def signature(found: Crossings, t: complex) -> int:
@@ -174,94 +218,34 @@ def _entered(found: Crossings, places: Floats) -> Ints:
     return np.where(entering < first, last - 1, entering)
 
 
-def crossings(curve: Curve, direction: Floats = VIEW) -> Crossings:
-    """Return the crossings seen from where `direction` (3,) points to, which must be generic."""
+def crossings(curve: Curve, direction: Floats | None = None) -> Crossings:
+    """Return the crossings seen along the z axis, or from where `direction` (3,) points to.
+
+    No two vertices may be seen in one place.
+    """
+    if direction is None:
+        return _seen(curve)
     up = direction / np.linalg.norm(direction)
     across = np.cross(up, [1.0, 2.0, 3.0])
     across /= np.linalg.norm(across)
-    start = np.vstack(curve) @ np.column_stack([across, np.cross(up, across), up])
-    after = _after(curve)
-    edge = start[after] - start
-    i, j = np.triu_indices(len(start), 1)
-    apart = (after[i] != j) & (after[j] != i)
-    i, j = i[apart], j[apart]
-    gap = start[j] - start[i]
-    area = _area(edge[i], edge[j])
-    # Parallel edges divide by zero, and then meet nowhere.
-    with np.errstate(divide="ignore", invalid="ignore"):
-        at_i, at_j = _area(gap, edge[j]) / area, _area(gap, edge[i]) / area
-    hit = (at_i >= 0) & (at_i < 1) & (at_j >= 0) & (at_j < 1)
-    i, j, at_i, at_j, area = i[hit], j[hit], at_i[hit], at_j[hit], area[hit]
-    i_over = start[i, 2] + at_i * edge[i, 2] > start[j, 2] + at_j * edge[j, 2]
-    return Crossings(
-        over=np.where(i_over, i + at_i, j + at_j),
-        under=np.where(i_over, j + at_j, i + at_i),
-        sign=np.where((area > 0) == i_over, 1, -1),
-        bounds=_bounds(curve),
-    )
+    turn = np.column_stack([across, np.cross(up, across), up])
+    return _seen([component @ turn for component in curve])
 
 
-def _area(u: Floats, v: Floats) -> Floats:
-    area: Floats = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    return area
+def _seen(curve: Curve) -> Crossings:
+    over, under, right = _core.crossings(curve)
+    return Crossings(over, under, np.where(right, 1, -1), _bounds(curve))
 
 
 def simplify(curve: Curve) -> Curve:
     """Remove every vertex whose triangle with its two neighbours no other edge meets (the KMT reduction).
 
-    Each removal is an isotopy. What is not clearly a miss counts as a hit, so the knot type never changes,
-    provided that the strands are further apart than 1e-5 of the curve's size. The result has size 1, and its
-    strands may as good as touch: do not simplify it again. Source: K. Koniaris and M. Muthukumar, Phys. Rev.
-    Lett. 66 (1991) 2211.
+    Each removal is an isotopy, decided exactly, so that strands may be as close as rounding lets them be;
+    in the result they may all but touch. Raises `CurveError` for a curve that crosses itself. Source:
+    K. Koniaris and M. Muthukumar, Phys. Rev. Lett. 66 (1991) 2211.
     """
-    points = np.vstack(curve)
-    points = (points - points.mean(axis=0)) / np.ptp(points, axis=0).max()
-    # A shake far below the distance of the strands, so that no four vertices stay in one plane.
-    points += np.random.default_rng(SEED).uniform(-1e-6, 1e-6, points.shape)
-    after = _after(curve)
-    before = np.argsort(after)
-    alive = np.ones(len(points), bool)
-    left = len(points) + 1
-    while alive.sum() < left:
-        left = int(alive.sum())
-        for v in np.flatnonzero(alive):
-            a, b = before[v], after[v]
-            others = alive.copy()
-            others[[before[a], a, v, b]] = False
-            ends = points[[before[a], after[b]]]
-            if after[b] != a and _clear(points[[a, v, b]], ends, points[others], points[after[others]]):
-                alive[v] = False
-                after[a], before[b] = b, a
-    return [points[i:j][alive[i:j]] for i, j in pairwise(_bounds(curve))]
-
-
-def _clear(corners: Floats, ends: Floats, p: Floats, q: Floats) -> bool:
-    """Tell whether the triangle is met by no edge p q, nor by those from its outer corners to the `ends`."""
-    near = ((np.minimum(p, q) <= corners.max(axis=0)) & (np.maximum(p, q) >= corners.min(axis=0))).all(axis=1)
-    # With the first corner as the origin the volumes below keep their digits.
-    p, q, ends = p[near] - corners[0], q[near] - corners[0], ends - corners[[0, 2]]
-    corners = corners - corners[0]
-    normal = np.cross(corners[1], corners[2])
-    # An edge that shares a corner meets the triangle only there, unless it lies in its plane.
-    if (abs(ends @ normal) < TINY).any():
-        return False
-    height_p, height_q = p @ normal, q @ normal
-    miss = (np.minimum(height_p, height_q) > TINY) | (np.maximum(height_p, height_q) < -TINY)
-    # (q - p) . (a x b) + (p x q) . (b - a), six times the volume spanned by the edge and a side a b of the
-    # triangle, has one sign for all sides where the line of the edge goes through the triangle.
-    previous = corners[[2, 0, 1]]
-    volumes = (q - p) @ np.cross(previous, corners).T + np.cross(p, q) @ (corners - previous).T
-    miss |= (volumes.max(axis=1) > TINY) & (volumes.min(axis=1) < -TINY)
-    return bool(miss.all())
+    return _core.simplify(curve)
 
 
 def _bounds(curve: Curve) -> Ints:
     return np.cumsum([0] + [len(component) for component in curve])
-
-
-def _after(curve: Curve) -> Ints:
-    """Return the (n,) index of the vertex that follows each, all components counted together."""
-    bounds = _bounds(curve)
-    after = np.arange(1, bounds[-1] + 1)
-    after[bounds[1:] - 1] = bounds[:-1]
-    return after

@@ -19,12 +19,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
-from sono._core import CurveError, Measures, Polish, PolishStatus, Status, Tightener
+from sono._core import Collapse, CurveError, Measures, Polish, PolishStatus, Status, Tightener
 
 Curve = list[NDArray[np.float64]]
 Method = Literal["both", "sono", "polish"]
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 Rung = tuple[Stage, int]
+Engine = Collapse | Tightener | Polish
 
 SLICE = 0.1
 """Seconds between two looks at the run."""
@@ -219,7 +220,7 @@ class Run:
     rungs: list[Rung] = field(default_factory=list)
     shape: Curve | None = None
     shapes: list[float] = field(default_factory=list)
-    worker: Tightener | Polish | None = None
+    worker: Engine | None = None
     offset: int = 0
     rival: Polish | None = None
     sweeps: int = 0
@@ -307,7 +308,7 @@ class Run:
         run = cls(**state | curves | {"rungs": rungs, "worker": None, "rival": rival})
         if state["worker"]:
             engine, worker = state["worker"]
-            run.worker = Polish.restore(worker) if engine == "Polish" else Tightener.restore(worker)
+            run.worker = _ENGINES[engine].restore(worker)
         return run
 
     def _climb(self, watch: Callable[[Progress], None]) -> None:
@@ -339,7 +340,7 @@ class Run:
         several = (n <= OFFSETS_TO or stuck) and sum(map(len, self.curve)) != n
         return self.offset + 1 >= (OFFSETS if several else 1)
 
-    def _better(self) -> Polish | Tightener:
+    def _better(self) -> Engine:
         """Return the better of the worker, which is done, and its rival; the other one's work is added up."""
         assert self.worker is not None
         if not (self.rival and isinstance(self.worker, Polish)):
@@ -349,7 +350,7 @@ class Run:
         self.worker, self.rival = better, None
         return better
 
-    def _engine(self, stage: Stage, n: int) -> Tightener | Polish:
+    def _engine(self, stage: Stage, n: int) -> Engine:
         """Begin a rung."""
         trial = len(self.shapes)
         seed = (self.settings.get("seed", 0) + trial + self.offset) % 2**64
@@ -358,6 +359,8 @@ class Run:
         settings = self.settings | {"seed": seed}
         if self.method == "both":
             settings |= _anneal_of(trial, default_settings() | self.settings)
+        if stage == "collapse":
+            return Collapse(self.curve, json.dumps(settings))
         try:
             return Tightener(self.curve, stage, n, json.dumps(settings))
         except CurveError:
@@ -409,7 +412,7 @@ class Run:
         agree = max(self.shapes) < (1 + SAME_SHAPE) * min(self.shapes)
         return len(self.shapes) >= (AGREEING if agree else self.trials) or len(self.shapes) >= self.trials
 
-    def _tight(self, worker: Tightener | Polish | None) -> Tight:
+    def _tight(self, worker: Engine | None) -> Tight:
         assert worker is not None
         status = worker.status()
         tight = Tight(
@@ -447,6 +450,8 @@ class Run:
         *levels, n = _doubled(sum(map(len, self.curve)), self.targets[0]) or self.targets[:1]
         return [*((between, level) for level in levels), (last, n)]
 
+
+_ENGINES: dict[str, type[Engine]] = {engine.__name__: engine for engine in (Collapse, Tightener, Polish)}
 
 _CLIMB: dict[Method, tuple[Stage, Stage]] = {
     "both": ("climb", "polish"),

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono import library
-from sono._core import CurveError, Measures, Polish, Tightener
+from sono._core import Collapse, CurveError, Measures, Polish, Tightener
 from sono.invariants import Fingerprint, fingerprint
 from sono.pipeline import HOT, SLICE, Curve, as_curve, tighten
 from sono.scramble import scramble
@@ -76,7 +76,7 @@ SEED_STRIDE = 10**6
 """Variants of one seed; those of the next begin after them."""
 
 Radii: TypeAlias = NDArray[np.float64]
-Worker = TypeVar("Worker", Tightener, Polish)
+Worker = TypeVar("Worker", Collapse, Tightener, Polish)
 Result = TypeVar("Result")
 
 Watch: TypeAlias = Callable[[], None]
@@ -120,7 +120,7 @@ class Source:
             return self.curve
         if self.name:
             return library.start(self.name, variant)
-        return scramble(_done(Tightener(self.curve, "collapse", 0, "{}"), watch).best(), variant)
+        return scramble(_done(Collapse(self.curve, "{}"), watch).best(), variant)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +159,7 @@ class Minimum:
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
     try:
-        collapsed = _done(Tightener(source.start(variant, watch), "collapse", 0, "{}"), watch)
+        collapsed = _done(Collapse(source.start(variant, watch), "{}"), watch)
         edge = _spread(*ANNEAL_EDGES, variant)
         n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
         if n > MOST_BEADS:

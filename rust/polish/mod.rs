@@ -62,6 +62,8 @@ const KEEP: f64 = 100.;
 const LONGEST_WAY: f64 = 0.1;
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
 const UNEQUAL: f64 = 0.1;
+/// Beads of a rope that is made of a curve which is none.
+const MOST_BEADS: usize = 20_000;
 /// Iterations in which a rope gets tight or never does.
 const MOST_ITERATIONS: u64 = 1000;
 /// A rope that cannot move begins anew with so many times its first mu, so often.
@@ -133,7 +135,7 @@ impl Polish {
     pub fn new(curve: &Curve, n: usize, passing: bool, seed: u64) -> Result<Self> {
         let given = measure(curve);
         let is_rope = given.r_c.is_some() && given.dispersion < UNEQUAL;
-        let made = if is_rope { None } else { Some(rope_curve(curve)?) };
+        let made = if is_rope { None } else { Some(rope_curve(curve, MOST_BEADS)?) };
         let mut curve = Rope::resampled(made.as_ref().unwrap_or(curve), n, seed)?.curve().clone();
         let bound = |t: &Term, l: &[f64]| 1e-3 * l[t.component].powi(6);
         let l = longest(&curve);

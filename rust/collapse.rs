@@ -1,0 +1,144 @@
+//! From any embedded curve to a jammed rope.
+//!
+//! A curve that holds a rope of a few thousand beads is collapsed as it is. A thinner one is first
+//! loosened ([`crate::loosen`]), and so is a rope that has jammed at many times the length that its
+//! diagram asks for: a knot of c crossings needs some 9 c radii of rope, 12 at most of the knots whose
+//! ropelength is known.
+
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+
+use crate::curve::Curve;
+use crate::error::{Error, Result};
+use crate::loosen::{Loosening, simplified};
+use crate::measures::measure;
+use crate::projection::fewest_crossings;
+use crate::rope::Violation;
+use crate::settings::Settings;
+use crate::tighten::{Outcome, Stage, Status, Tightener, scaled};
+
+/// Beads of a rope in the curve as it is, and of one in a loosened curve.
+const AS_IT_IS: usize = 4000;
+const LOOSENED: usize = 50_000;
+/// A jammed rope is far too long if it is longer than this for each crossing and once more, and that
+/// for each component.
+const A_CROSSING: f64 = 12.;
+const A_COMPONENT: f64 = 30.;
+
+/// Collapses a curve; everything needed to go on later is serialised with it.
+#[derive(Serialize, Deserialize)]
+pub struct Collapse {
+    settings: Settings,
+    given: Curve,
+    /// The collapse of the curve as it is, if it holds a rope.
+    direct: Option<Tightener>,
+    /// Whether it is to be loosened, or was.
+    loosened: bool,
+    /// Begun anew after a restart: it takes seconds at most.
+    #[serde(skip)]
+    loosening: Option<Loosening>,
+    /// The collapse of the loosened curve.
+    loose: Option<Tightener>,
+}
+
+impl Collapse {
+    /// Collapses any embedded curve of any scale; the number of vertices is chosen by itself.
+    ///
+    /// # Errors
+    /// [`Error::Setting`], [`Error::SelfCrossing`].
+    pub fn new(curve: &Curve, settings: Settings) -> Result<Self> {
+        let direct = match Tightener::collapse(curve, AS_IT_IS, settings) {
+            Ok(direct) => Some(direct),
+            Err(Error::TooThin { .. }) => None,
+            Err(error) => return Err(error),
+        };
+        let loosened = direct.is_none();
+        let given = curve.clone();
+        Ok(Self { settings, given, direct, loosened, loosening: None, loose: None })
+    }
+
+    /// Works for about `budget`, unless done before.
+    ///
+    /// # Errors
+    /// [`Error::TooComplex`], [`Error::TooThin`] where the curve cannot be loosened.
+    pub fn advance(&mut self, budget: Duration) -> Result<Status> {
+        let start = Instant::now();
+        let left = || budget.saturating_sub(start.elapsed());
+        if let Some(direct) = self.direct.as_mut().filter(|_| !self.loosened) {
+            direct.advance(left());
+            self.loosened =
+                direct.status().outcome != Outcome::Running && is_far_too_long(direct.best());
+        }
+        if self.loosened && self.loose.is_none() {
+            match self.loosen(left()) {
+                // A rope that is far too long is better than none.
+                Err(_) if self.direct.is_some() => self.loosened = false,
+                Err(error) => return Err(error),
+                Ok(()) => {}
+            }
+        }
+        if let Some(loose) = &mut self.loose {
+            loose.advance(left());
+        }
+        Ok(self.status())
+    }
+
+    fn loosen(&mut self, budget: Duration) -> Result<()> {
+        if self.loosening.is_none() {
+            let jammed = self.direct.as_ref().map(Tightener::best);
+            self.loosening = Some(Loosening::new(jammed.unwrap_or(&self.given))?);
+        }
+        let loosening = self.loosening.as_mut().expect("just begun");
+        if loosening.advance(budget)? {
+            self.loose = Some(Tightener::collapse(&loosening.curve(), LOOSENED, self.settings)?);
+            self.loosening = None;
+        }
+        Ok(())
+    }
+
+    /// Whether the curve was loosened first, so that little of its shape is left.
+    pub fn loosened(&self) -> bool {
+        self.loosened
+    }
+
+    /// The shortest rope so far, its R_s = 1, its centre at the origin.
+    pub fn best(&self) -> Curve {
+        let ropes = [&self.loose, &self.direct].into_iter().flatten().map(Tightener::best);
+        let shorter = |a: &&Curve, b: &&Curve| measure(a).l_p.total_cmp(&measure(b).l_p);
+        ropes.min_by(shorter).cloned().unwrap_or_else(|| {
+            let curve =
+                self.loosening.as_ref().map_or_else(|| self.given.clone(), Loosening::curve);
+            scaled(&curve, measure(&curve).r_s)
+        })
+    }
+
+    /// Where it stands.
+    pub fn status(&self) -> Status {
+        let best = measure(&self.best());
+        match (&self.loose, &self.direct) {
+            (Some(sono), _) | (None, Some(sono)) if self.loose.is_some() || !self.loosened => {
+                Status { best, ..sono.status() }
+            }
+            _ => Status {
+                outcome: Outcome::Running,
+                stage: Stage::Loosen,
+                progress: 0.,
+                sweeps: 0,
+                undone: 0,
+                epsilon: 0.,
+                met: Violation::default(),
+                best,
+            },
+        }
+    }
+}
+
+/// Whether a jammed rope is many times as long as its knot can need.
+fn is_far_too_long(rope: &Curve) -> bool {
+    let most =
+        |crossings: usize| A_CROSSING * crossings as f64 + A_COMPONENT * rope.components() as f64;
+    let crossings = |rope| simplified(rope).map(|simple| fewest_crossings(&simple));
+    let length = measure(rope).l_p;
+    length > most(0) && crossings(rope).is_ok_and(|crossings| length > most(crossings))
+}

@@ -1,0 +1,291 @@
+//! A polygon of few long edges, moved without letting one edge pass another.
+//!
+//! A vertex v between a and b may go straight to another place, or be removed, where no other edge
+//! meets the triangles that its two edges sweep: a v v' and v b v', or a v b. That is decided
+//! exactly, by the signs of volumes in adaptive arithmetic (J. Shewchuk, "Adaptive precision
+//! floating-point arithmetic and fast robust geometric predicates", Discrete Comput. Geom. 18 (1997)
+//! 305), and what only touches counts as met, so each move is an isotopy, however close the strands
+//! and however different the scales. The edges are kept in a tree of boxes along the curve.
+
+use glam::DVec3;
+use robust::{Coord3D, orient3d};
+
+use crate::curve::Curve;
+use crate::segments;
+
+/// Vertices in slots, linked to rings; what is removed leaves its slot empty.
+#[derive(Debug, Clone)]
+pub struct Sticks {
+    points: Vec<DVec3>,
+    next: Vec<usize>,
+    prev: Vec<usize>,
+    /// Where each component begins among the slots, and the end of the last.
+    bounds: Vec<usize>,
+    /// How many vertices each component has.
+    left: Vec<usize>,
+    tree: Tree,
+}
+
+impl Sticks {
+    /// The polygon as it is.
+    pub fn new(curve: &Curve) -> Self {
+        let n = curve.n();
+        let points = curve.vertices().to_vec();
+        let next: Vec<_> = (0..n).map(|i| curve.next(i)).collect();
+        let prev = (0..n).map(|i| curve.prev(i)).collect();
+        let bounds = (0..curve.components()).map(|c| curve.range(c).start).chain([n]).collect();
+        let left = curve.ranges().map(|range| range.len()).collect();
+        let tree =
+            Tree::new(next.iter().enumerate().map(|(i, &j)| Span::of(&[points[i], points[j]])));
+        Self { points, next, prev, bounds, left, tree }
+    }
+
+    /// The polygon as a curve.
+    pub fn curve(&self) -> Curve {
+        let component = |bounds: &[usize]| {
+            (bounds[0]..bounds[1]).filter(|&i| self.is_there(i)).map(|i| self.points[i]).collect()
+        };
+        Curve::from_components(self.bounds.windows(2).map(component).collect())
+    }
+
+    /// The vertices, component after component.
+    pub fn slots(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.points.len()).filter(|&i| self.is_there(i))
+    }
+
+    /// Number of vertices.
+    pub fn n(&self) -> usize {
+        self.left.iter().sum()
+    }
+
+    /// Length of all edges.
+    pub fn length(&self) -> f64 {
+        self.slots().map(|i| self.points[i].distance(self.points[self.next[i]])).sum()
+    }
+
+    /// Whether vertex `i` has not been removed.
+    pub fn is_there(&self, i: usize) -> bool {
+        self.next[i] != REMOVED
+    }
+
+    /// Puts all vertices elsewhere, which must be known to be an isotopy.
+    pub fn set_points(&mut self, points: Vec<DVec3>) {
+        self.points = points;
+        self.tree = Tree::new((0..self.points.len()).map(|i| Span::of(&self.edge(i))));
+    }
+
+    /// The edges, named by the vertex before each, that come within `reach` of the path through the vertices.
+    pub fn near(&self, path: [usize; 3], reach: f64) -> Vec<usize> {
+        let mut near = vec![];
+        self.tree.any(&Span::of(&path.map(|i| self.points[i])).grown(reach), |i| {
+            near.push(i);
+            false
+        });
+        near
+    }
+
+    /// Where vertex `i` is.
+    pub fn point(&self, i: usize) -> DVec3 {
+        self.points[i]
+    }
+
+    /// The ends of the edge after vertex `i`.
+    pub fn edge(&self, i: usize) -> [DVec3; 2] {
+        [self.points[i], self.points[self.next[i]]]
+    }
+
+    /// The vertex after `i`.
+    pub fn next(&self, i: usize) -> usize {
+        self.next[i]
+    }
+
+    /// The vertex before `i`.
+    pub fn prev(&self, i: usize) -> usize {
+        self.prev[i]
+    }
+
+    /// Removes vertex `i` if that is an isotopy; a triangle is as simple as a component gets.
+    pub fn remove(&mut self, i: usize) -> bool {
+        let (a, b) = (self.prev[i], self.next[i]);
+        let c = self.bounds.partition_point(|&bound| bound <= i) - 1;
+        if self.left[c] == 3
+            || self.meets([a, i, b].map(|i| self.points[i]), [Some(a), None, Some(b)], i)
+        {
+            return false;
+        }
+        self.left[c] -= 1;
+        (self.next[a], self.prev[b]) = (b, a);
+        (self.next[i], self.prev[i]) = (REMOVED, REMOVED);
+        self.tree.set(i, Span::EMPTY);
+        self.tree.set(a, Span::of(&self.edge(a)));
+        true
+    }
+
+    /// Moves vertex `i` to a `place` if that is an isotopy.
+    pub fn shift(&mut self, i: usize, place: DVec3) -> bool {
+        let (a, b) = (self.prev[i], self.next[i]);
+        let [from, p, q] = [i, a, b].map(|i| self.points[i]);
+        // In one plane the two edges might come to lie on each other.
+        if volume(p, q, from, place) == 0.
+            || self.meets([p, from, place], [Some(a), None, None], i)
+            || self.meets([q, from, place], [Some(b), None, None], i)
+        {
+            return false;
+        }
+        self.points[i] = place;
+        self.tree.set(a, Span::of(&self.edge(a)));
+        self.tree.set(i, Span::of(&self.edge(i)));
+        true
+    }
+
+    /// Distance of the edge after vertex `i` from all others; from its neighbours, that of the ends
+    /// which they do not share.
+    pub fn clearance(&self, i: usize) -> f64 {
+        let [from, to] = self.edge(i);
+        let apart = |edge: [DVec3; 2], other: [DVec3; 2]| {
+            segments::to_point(edge, other[1]).min(segments::to_point(other, edge[0]))
+        };
+        let near = apart(self.edge(self.prev[i]), [from, to])
+            .min(apart([from, to], self.edge(self.next[i])));
+        let own = [self.prev[i], i, self.next[i]];
+        self.tree.nearest(&Span::of(&[from, to]), near, |j| {
+            if own.contains(&j) { f64::MAX } else { segments::distance([from, to], self.edge(j)) }
+        })
+    }
+
+    /// Whether an edge other than the two at `moving` meets a triangle, whose `corners` that are
+    /// vertices it may share.
+    fn meets(&self, triangle: [DVec3; 3], corners: [Option<usize>; 3], moving: usize) -> bool {
+        let [a, b, c] = triangle;
+        let before = self.prev[moving];
+        self.tree.any(&Span::of(&triangle), |i| {
+            let j = self.next[i];
+            if i == moving || i == before {
+                return false;
+            }
+            let [p, q] = [self.points[i], self.points[j]];
+            if corners.contains(&Some(i)) {
+                return volume(a, b, c, q) == 0.;
+            }
+            if corners.contains(&Some(j)) {
+                return volume(a, b, c, p) == 0.;
+            }
+            pierces([p, q], triangle)
+        })
+    }
+}
+
+const REMOVED: usize = usize::MAX;
+
+/// Six times the volume of a tetrahedron; its sign is exact.
+pub(crate) fn volume(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+    let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
+    orient3d(a, b, c, d)
+}
+
+/// Whether a segment meets a triangle, or may do so: a segment in its plane counts.
+fn pierces([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
+    let both_sides =
+        |volumes: &[f64]| volumes.iter().any(|&v| v > 0.) && volumes.iter().any(|&v| v < 0.);
+    let ends = [volume(a, b, c, p), volume(a, b, c, q)];
+    if !ends.contains(&0.) && !both_sides(&ends) {
+        return false;
+    }
+    !both_sides(&[volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)])
+}
+
+/// An axis-parallel box.
+#[derive(Debug, Clone, Copy)]
+pub struct Span {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Span {
+    const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+
+    fn of(points: &[DVec3]) -> Self {
+        points
+            .iter()
+            .fold(Self::EMPTY, |span, &p| Self { low: span.low.min(p), high: span.high.max(p) })
+    }
+
+    fn grown(self, by: f64) -> Self {
+        Self { low: self.low - by, high: self.high + by }
+    }
+
+    fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+
+    fn distance_squared(&self, other: &Self) -> f64 {
+        (other.low - self.high).max(self.low - other.high).max(DVec3::ZERO).length_squared()
+    }
+}
+
+/// The boxes of edges, and of neighbouring boxes two by two, up to one that holds all.
+#[derive(Debug, Clone)]
+struct Tree {
+    /// Node k has the children 2k and 2k + 1; the leaves come last.
+    nodes: Vec<Span>,
+    first_leaf: usize,
+}
+
+impl Tree {
+    fn new(leaves: impl ExactSizeIterator<Item = Span>) -> Self {
+        let first_leaf = leaves.len().next_power_of_two();
+        let mut nodes = vec![Span::EMPTY; 2 * first_leaf];
+        nodes[first_leaf..].iter_mut().zip(leaves).for_each(|(node, leaf)| *node = leaf);
+        for k in (1..first_leaf).rev() {
+            nodes[k] = nodes[2 * k].union(nodes[2 * k + 1]);
+        }
+        Self { nodes, first_leaf }
+    }
+
+    fn set(&mut self, leaf: usize, span: Span) {
+        let mut k = self.first_leaf + leaf;
+        self.nodes[k] = span;
+        while k > 1 {
+            k /= 2;
+            self.nodes[k] = self.nodes[2 * k].union(self.nodes[2 * k + 1]);
+        }
+    }
+
+    /// The least `distance` of a leaf, at most `least`, where that of its box from `span` is a bound.
+    fn nearest(&self, span: &Span, mut least: f64, mut distance: impl FnMut(usize) -> f64) -> f64 {
+        let far = |k: usize| self.nodes[k].distance_squared(span);
+        let mut todo = vec![(far(1), 1)];
+        while let Some((squared, k)) = todo.pop() {
+            if squared >= least * least {
+                continue;
+            }
+            if k < self.first_leaf {
+                let (one, other) = ((far(2 * k), 2 * k), (far(2 * k + 1), 2 * k + 1));
+                todo.extend(if one.0 < other.0 { [other, one] } else { [one, other] });
+            } else {
+                least = least.min(distance(k - self.first_leaf));
+            }
+        }
+        least
+    }
+
+    /// Whether `test` holds for a leaf whose box meets `span`.
+    fn any(&self, span: &Span, mut test: impl FnMut(usize) -> bool) -> bool {
+        let mut todo = vec![1];
+        while let Some(k) = todo.pop() {
+            if !self.nodes[k].meets(span) {
+                continue;
+            }
+            if k < self.first_leaf {
+                todo.extend([2 * k + 1, 2 * k]);
+            } else if test(k - self.first_leaf) {
+                return true;
+            }
+        }
+        false
+    }
+}
