@@ -146,13 +146,12 @@ def test_a_disk_that_is_full_for_a_while(job: Job, monkeypatch: pytest.MonkeyPat
     assert [result.trouble for result in batch.run(job, full_during_the_anneal)] == [None, None]
 
 
-def test_too_thin_a_curve_fails_as_a_whole(job: Job) -> None:
-    thin = [np.array([[0, 0, 0], [2, 2, 0], [2, 0, 1e-8], [0, 2, 1e-8]])]
-    formats.write("3_1.txt", thin)
+def test_too_entangled_a_curve_fails_as_a_whole(job: Job) -> None:
+    formats.write("3_1.txt", [np.random.default_rng(0).normal(size=(1200, 3))])
     (result,) = batch.run(job, nothing)
     assert result.row is None
     assert result.trouble
-    assert result.trouble.startswith("3_1.txt: the curve comes so close to itself")
+    assert result.trouble.startswith("3_1.txt: the curve is so entangled that")
 
 
 def test_the_row_of_a_coarse_rope_is_one_for_the_next(job: Job) -> None:
