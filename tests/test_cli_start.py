@@ -68,6 +68,7 @@ def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
         (["--braid", ""], "give whole numbers"),
         (["--braid", "1 1", "--variant", "-2"], "--variant -2: a braid word has no planar diagram"),
         (["Hopf", "--variant", "-2"], "only the knots of the tables have negative variants"),
+        (["3_1", "-o", "out.png"], "out.png: .png is no format for vertices"),
         (["--list", "3_1"], "--list stands alone"),
         (["--list", "-o", "names.txt"], "--list stands alone"),
     ],

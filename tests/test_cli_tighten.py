@@ -1,6 +1,7 @@
 """`sono tighten`: rows and files, names that nobody loses, signals, and going on after them."""
 
 import json
+import math
 import os
 import re
 import signal
@@ -138,6 +139,8 @@ def test_files_are_not_overwritten(folder: Path, sono: Sono) -> None:
         (["3_1.txt", "--set", "anneal_sweeps=-1"], "--set anneal_sweeps=-1: "),
         (["3_1.txt", "Hopf.txt", "-o", "one.txt"], "name a folder (FOLDER/)"),
         (["3_1.txt", "-n", "60,80", "-o", "-"], "name a folder (FOLDER/)"),
+        (["3_1.txt", "-o", "rope.stl"], "rope.stl: .stl is no format for vertices; the suffixes are: .txt, "),
+        (["3_1.txt", "--contacts", "forces.png"], "forces.png: .png is no format for forces"),
         (["3_1.txt", "3_1.txt"], "3_1.n480.txt would be written 2 times"),
         (["-", "-"], "stdin.n480.txt would be written 2 times"),
         (["3_1.txt", "-o", "Hopf.txt/"], "Hopf.txt: cannot be made: "),
@@ -164,6 +167,16 @@ def test_one_bad_file_does_not_stop_the_others(folder: Path, sono: Sono) -> None
         expected
     )
     assert names(folder) == ["3_1.n60.txt", "crossing.txt", "open.txt"]
+
+
+def test_an_open_chain_is_told(folder: Path, sono: Sono) -> None:
+    chain = "".join(f"{k} {math.cos(k)} {math.sin(k)}\n" for k in range(20))
+    (folder / "chain.txt").write_text(chain)
+    for command in (["measure"], ["tighten", "-n", "60", *QUICK], ["search", "--trials", "1"]):
+        quiet = sono(*command, "chain.txt", "-q")
+        loud = sono(*command, "chain.txt", *([] if command == ["measure"] else ["--force"]))
+        assert (loud.exit_code, quiet.exit_code, quiet.stderr) == (0, 0, "")
+        assert "sono: chain.txt:20: the edge that closes the curve, from here back to line 1" in loud.stderr
 
 
 def test_too_few_vertices_do_not_stop_the_larger_n(folder: Path, sono: Sono) -> None:

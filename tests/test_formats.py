@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -9,12 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from sono import formats
 from sono.formats import FormatError, VertexFile, atomic_text, text, vect
+from sono.formats.doubts import jumps
+from sono.formats.vertices import ends_meet
 
 TRIANGLE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 ROWS = "0 0 0\n1 0 0\n0 1 0\n"
@@ -40,6 +43,8 @@ def test_round_trip_keeps_every_bit(
     curve: list[NDArray[np.float64]],
     comments: list[str],
 ) -> None:
+    assume(not any(map(ends_meet, curve)))
+    assume(not jumps(curve)[1])
     path = tmp_path_factory.getbasetemp() / f"curve.{suffix}"
     formats.write(path, curve, comments)
     assert [c.tobytes() for c in formats.read(path).components] == [c.tobytes() for c in curve]
@@ -62,6 +67,81 @@ def test_blank_lines_separate_components() -> None:
 
 def test_last_vertex_may_repeat_the_first() -> None:
     assert parsed(f"{ROWS}0 0 -0.0\n") == [TRIANGLE]
+
+
+SPACING = 2 * np.pi / 40
+SHAPE = np.arange(40) * SPACING
+TREFOIL = np.column_stack(
+    [
+        (2 + np.cos(3 * SHAPE)) * np.cos(2 * SHAPE),
+        (2 + np.cos(3 * SHAPE)) * np.sin(2 * SHAPE),
+        np.sin(3 * SHAPE),
+    ]
+)
+
+
+@pytest.mark.parametrize("scale", [1e-50, 1e-3, 1.0, 1e50])
+@pytest.mark.parametrize("error", [0, 1e-15, 1e-9, -2e-6])
+def test_a_last_vertex_repeats_the_first_up_to_rounding(error: float, scale: float) -> None:
+    knot = scale * TREFOIL
+    again = np.vstack([knot, knot[0] + error * scale * np.array([0.3, 0.5, -0.2])])
+    for content in (text.write([again], []), vect.write([again], []), open_vect(again)):
+        read = (vect if content.startswith("VECT") else text).read(content, "k")
+        assert [c.tobytes() for c in read.components] == [knot.tobytes()]
+    # In the second component of a link too.
+    far = knot + 9 * scale
+    assert [len(c) for c in text.read(text.write([far, again], []), "k").components] == [40, 40]
+
+
+def open_vect(vertices: NDArray[np.float64]) -> str:
+    """A VECT file of one polyline that is said to be open."""
+    return vect.write([vertices], []).replace(f"\n-{len(vertices)}\n", f"\n{len(vertices)}\n")
+
+
+def test_single_precision_repeats_too() -> None:
+    t = np.linspace(0, 2 * np.pi, 200, dtype=np.float32)
+    circle = np.column_stack([5 * np.cos(7 * t) + 7, 5 * np.sin(7 * t), np.sin(t)]).astype(np.float64)
+    assert circle[0].tolist() != circle[-1].tolist()
+    assert len(text.read(text.write([circle], []), "k").components[0]) == 199
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-1, 0.5])
+def test_a_short_closing_edge_is_an_edge(share: float) -> None:
+    knot = np.vstack([TREFOIL, TREFOIL[0] + share * (TREFOIL[-1] - TREFOIL[0])])
+    assert len(text.read(text.write([knot], []), "k").components[0]) == 41
+    with pytest.raises(FormatError, match="a polyline is open"):
+        vect.read(open_vect(knot), "k")
+
+
+def test_short_edges_beside_a_short_closing_edge_are_edges() -> None:
+    small = np.vstack([TREFOIL, TREFOIL[0] + 1e-9 * np.array([[3, 0, 0], [2, 1, 0], [1, 0, 1]])])
+    assert len(text.read(text.write([small], []), "k").components[0]) == 43
+
+
+@pytest.mark.parametrize(
+    ("word", "value"),
+    [("1.5D+00", 1.5), ("-2d-3", -0.002), (".5D1", 5.0), ("1.25Q+02", 125.0), ("1.5-300", 1.5e-300)],
+)
+def test_fortran_numbers(word: str, value: float) -> None:
+    assert parsed(f"{word} 0 0\n1 0 0\n0 1.0D+00 0\n")[0][0] == [value, 0, 0]
+    vectors = vect.read(f"VECT 1 3 0 -3 0\n{word} 0 0\n1 0 0\n0 1.0D+00 0\n", "k")
+    assert vectors.components[0][0].tolist() == [value, 0, 0]
+
+
+@pytest.mark.parametrize("word", ["1D", "D1", "1-2", "1.0-2", "12-345", "1.0D+", "0.5D0.5", "1E5D5"])
+def test_what_fortran_does_not_write(word: str) -> None:
+    with pytest.raises(FormatError, match=rf"k\.xyz:1: '{re.escape(word)}' is not a number"):
+        parsed(f"{word} 0 0\n1 0 0\n0 1 0\n")
+
+
+@pytest.mark.parametrize("suffix", ["stl", "npy", "png", "pdb", "csv", "n480"])
+def test_a_suffix_of_no_format_is_not_written(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"k.{suffix}"
+    with pytest.raises(FormatError, match=rf"k\.{suffix}: \.{suffix} is no format for vertices"):
+        formats.write(path, [TREFOIL])
+    assert not path.exists()
+    formats.write(path, [TREFOIL], format="text")
+    assert len(formats.read(path).components[0]) == 40
 
 
 @pytest.mark.parametrize("end", [b"\r\n", b"\r", b"\n"])

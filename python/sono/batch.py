@@ -18,7 +18,7 @@ from typing import Any
 
 from sono import contacts, formats, sources
 from sono._core import CurveError, Measures
-from sono.formats import FormatError, VertexFile
+from sono.formats import FormatError, VertexFile, is_stream
 from sono.pipeline import TRIALS, Method, Progress, Run, Stopped, Tight, default_settings, forces, measure
 from sono.tables import Row
 from sono.workers import Workers
@@ -152,6 +152,7 @@ def run(job: Job, watch: Callable[[Progress], None]) -> Iterator[Result]:
     """Do a job, giving each row when its vertices are on the disk; `watch` may raise `Stopped`."""
     try:
         file = sources.read(job.source)
+        yield from (Result(None, note=doubt) for doubt in file.doubts())
         kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
         for n in kept:
             yield _kept(job, n)
@@ -430,12 +431,6 @@ def title(name: str, status: str, m: Measures) -> list[str]:
         f"{name}: {status}, rope radius R_s = 1",
         f"n {m.n}  dl {m.dl:.8f}  L_p {m.l_p:.8f}  L_c {l_c}  L_a {l_a}  (length over radius)",
     ]
-
-
-def is_stream(output: str) -> bool:
-    """Tell what can be written to but not read again: standard output, a device, a pipe."""
-    there = os.path.exists(output)
-    return output == "-" or (there and not os.path.isfile(output) and not os.path.isdir(output))
 
 
 def free_name(output: str) -> str:

@@ -21,12 +21,11 @@ from sono.batch import (
     TIGHT,
     Result,
     as_row,
-    is_stream,
     measured,
     says_tight,
     title,
 )
-from sono.formats import FormatError, VertexFile
+from sono.formats import FormatError, VertexFile, is_stream
 from sono.invariants import fingerprint
 from sono.pipeline import Stopped, forces, measure
 from sono.search import FINE_EDGE, SAME_LENGTH, Minimum, Search, Shape, Source, finish, rank, same_edges
@@ -79,7 +78,9 @@ class SearchJob:
     def results(self, show: Show) -> Iterator[Result]:
         """Do the job; `show` is told how far it is, from 0 to 1, and what it does; it may raise `Stopped`."""
         try:
-            yield from _Hunt(self, sources.read(self.source), show).results()
+            file = sources.read(self.source)
+            yield from (Result(None, note=doubt) for doubt in file.doubts())
+            yield from _Hunt(self, file, show).results()
         except FormatError as error:
             yield Result(None, str(error))
         except ValueError as error:  # of a curve that cannot be measured

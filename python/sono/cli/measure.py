@@ -41,8 +41,11 @@ def command(
                 failed = True
                 options.complain(str(error))
                 continue
-            if measures.l_c is None and not quiet:
-                options.complain(f"{curve.name}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
+            doubts = curve.doubts()
+            if measures.l_c is None:
+                doubts.append(f"{curve.name}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
+            for doubt in doubts if not quiet else []:
+                options.complain(doubt)
             more = {"residual": forces(curve.components).residual} if "residual" in columns else {}
             table.row(batch.as_row(options.knot_name(source), curve.name, measures, **more))
     sys.exit(1 if failed else 0)

@@ -149,6 +149,21 @@ def knot_name(source: str) -> str:
     return "stdin" if source == "-" else Path(source).stem
 
 
+def names_one_file(path: str) -> bool:
+    """Tell whether this names a single file, or standard output, rather than a folder."""
+    return not path.endswith(("/", os.sep)) and not os.path.isdir(path)
+
+
+def check_suffix(path: str) -> None:
+    """Refuse a file for vertices whose suffix is that of no format."""
+    from sono import formats  # here, since numpy would make --help wait
+
+    try:
+        formats.by_suffix(path)
+    except formats.FormatError as error:
+        raise click.UsageError(str(error)) from error
+
+
 def complain(message: str) -> None:
     """An error or a warning, on standard error."""
     click.echo(f"sono: {message}", err=True)

@@ -113,9 +113,10 @@ def _plan(sources: list[str], output: str | None) -> Iterator[tuple[str, str, st
     """Give the name of each source, and where its vertices go."""
     for source in sources:
         name = options.knot_name(source)
-        if output == "-" or (output and not output.endswith(("/", os.sep)) and not os.path.isdir(output)):
+        if output and options.names_one_file(output):
             if len(sources) > 1:
                 raise click.UsageError("-o names one file for several knots; name a folder (FOLDER/)")
+            options.check_suffix(output)
             yield source, name, output
         else:
             yield source, name, os.path.join(output or "", f"{name}.tight.txt")

@@ -57,6 +57,7 @@ def command(
         raise click.UsageError("give either a NAME or a --braid word")
     if word is not None and variant < 0:
         raise click.UsageError(f"--variant {variant}: a braid word has no planar diagram; give 0 or more")
+    options.check_suffix(output)
     if output != "-" and Path(output).exists() and not force:
         raise click.UsageError(f"{output} exists; --force overwrites it")
     try:

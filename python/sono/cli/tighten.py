@@ -156,11 +156,12 @@ def _plan(
 ) -> Iterator[tuple[str, str, dict[int, str]]]:
     """Give the name of each source, and where its vertices for each n go."""
     names = [options.knot_name(source) for source in sources]
-    if output == "-" or (output and not output.endswith(("/", os.sep)) and not os.path.isdir(output)):
+    if output and options.names_one_file(output):
         if len(sources) * len(targets) > 1:
             raise click.UsageError(
                 "-o names one file, but there are several results; name a folder (FOLDER/)"
             )
+        options.check_suffix(output)
         yield sources[0], names[0], {targets[0]: output}
         return
     for source, name in zip(sources, names, strict=True):
@@ -179,11 +180,13 @@ def _forces(path: str | None, outputs: dict[int, str], name: str, sources: int) 
         return {}
     if not path:
         raise click.UsageError("--contacts needs the name of a file or folder/")
-    if path.endswith(("/", os.sep)) or os.path.isdir(path):
+    if not options.names_one_file(path):
         stems = {n: f"{name}.n{n}" if file == "-" else Path(file).stem for n, file in outputs.items()}
         return {n: os.path.join(path, f"{stem}.contacts.tsv") for n, stem in stems.items()}
     if len(outputs) * sources > 1:
         raise click.UsageError("--contacts names one file, but there are several results; name a folder/")
+    if (suffix := Path(path).suffix.lower()) not in ("", ".tsv", ".txt", ".dat"):
+        raise click.UsageError(f"{path}: {suffix} is no format for forces, which are written as .tsv")
     return dict.fromkeys(outputs, path)
 
 

@@ -1,7 +1,8 @@
 """Curve files in and out: one module a format, each with `read(text, name)` and `write`.
 
-A new format is one module and one line in `FORMATS`. Its key is also the suffix that selects it; a file with
-another suffix is recognised by its content, and is plain text when nothing else fits.
+A new format is one module and a line in `FORMATS`, with its suffixes in `SUFFIXES`. A file that is read is
+recognised by its content unless the suffix tells, and is plain text when nothing else fits; one that is
+written needs a suffix that is known, or none.
 """
 
 import os
@@ -13,10 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import text, vect
-from sono.formats.files import atomic_text, load, save
+from sono.formats.files import atomic_text, is_stream, load, save
 from sono.formats.vertices import FormatError, VertexFile
 
-__all__ = ["FORMATS", "FormatError", "VertexFile", "atomic_text", "load", "read", "save", "write"]
+__all__ = [
+    "FORMATS",
+    "SUFFIXES",
+    "FormatError",
+    "VertexFile",
+    "atomic_text",
+    "by_suffix",
+    "is_stream",
+    "load",
+    "read",
+    "save",
+    "write",
+]
 
 
 class Format(Protocol):
@@ -34,6 +47,9 @@ FORMATS: dict[str, Format] = {
     "vect": vect,
 }
 
+SUFFIXES = {"": "text", ".txt": "text", ".xyz": "text", ".dat": "text", ".vect": "vect"}
+"""The format of a file that is written, by its suffix."""
+
 
 def read(source: str | os.PathLike[str]) -> VertexFile:
     """Read a curve of one or more components from a file, or from standard input when `source` is "-".
@@ -42,8 +58,8 @@ def read(source: str | os.PathLike[str]) -> VertexFile:
     that repeats the first is dropped. Lengths keep the file's unit. Raises `FormatError`.
     """
     name, content = load(source)
-    format = _by_suffix(name) or ("vect" if vect.recognises(content) else "text")
-    return FORMATS[format].read(content, name)
+    known = "vect" if _suffix(name) == ".vect" or vect.recognises(content) else "text"
+    return FORMATS[known].read(content, name)
 
 
 def write(
@@ -55,16 +71,25 @@ def write(
     """Write components, each (n_i, 3), to a file, or to standard output when `target` is "-".
 
     The format follows the suffix unless `format` names it. Coordinates keep every digit, and a file appears
-    whole or not at all. Raises `FormatError` if it cannot be written, `ValueError` for an unknown format.
+    whole or not at all. Raises `FormatError` if it cannot be written or its suffix is that of no format,
+    `ValueError` for an unknown format.
     """
     name = os.fspath(target)
-    format = format or _by_suffix(name) or "text"
+    format = format or by_suffix(name)
     if format not in FORMATS:
         raise ValueError(f"unknown format {format!r}; the formats are: {', '.join(FORMATS)}")
     content = FORMATS[format].write(components, comments)
     save(name, content)
 
 
-def _by_suffix(name: str) -> str | None:
-    suffix = PurePath(name).suffix.removeprefix(".").lower()
-    return suffix if suffix in FORMATS else None
+def by_suffix(name: str) -> str:
+    """Return the format in which a file of this name is written. Raises `FormatError` for another suffix."""
+    suffix = _suffix(name)
+    if suffix not in SUFFIXES and not is_stream(name):
+        known = ", ".join(filter(None, SUFFIXES))
+        raise FormatError(f"{name}: {suffix} is no format for vertices; the suffixes are: {known}, or none")
+    return SUFFIXES.get(suffix, "text")
+
+
+def _suffix(name: str) -> str:
+    return PurePath(name).suffix.lower()

@@ -33,6 +33,12 @@ def load(source: str | os.PathLike[str]) -> tuple[str, str]:
     return name, text.replace("\r\n", "\n").replace("\r", "\n")
 
 
+def is_stream(output: str) -> bool:
+    """Tell what can be written to but not read again: standard output, a device, a pipe."""
+    there = os.path.exists(output)
+    return output == "-" or (there and not os.path.isfile(output) and not os.path.isdir(output))
+
+
 def save(target: str, content: str) -> None:
     """Write a whole text to a file, or to standard output for "-". Raises `FormatError`."""
     if target == "-":

@@ -16,7 +16,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.vertices import FormatError, VertexFile, not_a_number, shown
+from sono.formats.vertices import FormatError, VertexFile, not_a_number, numbers, shown
 
 
 def read(text: str, name: str) -> VertexFile:
@@ -29,7 +29,7 @@ def read(text: str, name: str) -> VertexFile:
         if data:
             cells = _cells(data)
             try:
-                x, y, z = map(float, cells)
+                x, y, z = numbers(cells)
             except ValueError:
                 raise FormatError.at(name, number, _wrong(cells)) from None
             rows.append((x, y, z))

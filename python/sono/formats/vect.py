@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.vertices import FormatError, VertexFile, not_a_number, shown
+from sono.formats.vertices import FormatError, VertexFile, ends_meet, not_a_number, numbers, shown
 
 
 def recognises(text: str) -> bool:
@@ -118,7 +118,7 @@ class _Words:
     def numbers(self, count: int, what: str) -> list[float]:
         words = self._take(count, what)
         try:
-            return list(map(float, words))
+            return numbers(words)
         except ValueError:
             bad = not_a_number(words) or 0
             self._next += bad + 1 - count
@@ -131,7 +131,7 @@ class _Words:
         first = self._next
         flat = self.numbers(3 * abs(size), "a vertex")
         rows = [flat[i : i + 3] for i in range(0, len(flat), 3)]
-        if size > 0 and rows[0] != rows[-1]:
+        if size > 0 and not ends_meet(np.array(rows)):
             raise FormatError.at(
                 self._name, line, f"a polyline is open; closed polylines have a negative count: write {-size}"
             )

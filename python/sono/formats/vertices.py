@@ -1,11 +1,26 @@
 """What every format reads into, and the checks that every curve file must pass."""
 
-from collections.abc import Sequence
+import math
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sono.formats.doubts import closing_edge, jumps
+
+REPEATED = 1e-4
+"""A last vertex nearer to the first than this share of the edges beside them is the first again, rounded: in
+double or single precision, or to the digits of a file. An edge so short beside such long ones is none."""
+
+_FORTRAN = re.compile(r"([+-]?\d*\.?\d*)[dq]([+-]?\d+)|([+-]?\d*\.\d*)([+-]\d{3})", re.ASCII | re.IGNORECASE)
+"""1.0D+00, 1.0Q+00 and 1.0-100: Fortran leaves the letter out where an exponent has three digits."""
+
+
+SHOWN = 12
+"""Lines that a message names at most."""
 
 
 class FormatError(ValueError):
@@ -29,13 +44,39 @@ class VertexFile:
         """Say where a vertex stands (both indices 0-based), as "name:line"."""
         return f"{self.name}:{self.lines[component][vertex]}"
 
+    def doubts(self) -> list[str]:
+        """Say which components look like open chains."""
+        return [
+            f"{self.where(component, -1)}: the edge that closes the curve, from here back to line "
+            f"{self.lines[component][0]}, is {far:.0f} times the mean edge; "
+            "if this chain is open, its knot is what this edge makes of it"
+            for component, vertices in enumerate(self.components)
+            if (far := closing_edge(vertices))
+        ]
+
     @classmethod
     def checked(
         cls, name: str, components: Sequence[tuple[Sequence[Sequence[float]], Sequence[int]]]
     ) -> "VertexFile":
         """Check components, each as (rows of x y z, their line numbers). Raises `FormatError`."""
         pairs = [_closed(name, np.array(rows, np.float64), np.array(lines)) for rows, lines in components]
-        return cls(name, [vertices for vertices, _ in pairs], [lines for _, lines in pairs])
+        curve = cls(name, [vertices for vertices, _ in pairs], [lines for _, lines in pairs])
+        curve._refuse_jumps()
+        return curve
+
+    def _refuse_jumps(self) -> None:
+        edges, box = jumps(self.components)
+        if not box:
+            return
+        after = np.concatenate([np.roll(lines, -1) for lines in self.lines])[edges]
+        listed = ", ".join(map(str, after[:SHOWN])) + (" and so on" if len(after) > SHOWN else "")
+        sizes = " and ".join(f"{size:.4g} in {axis}" for axis, size in box.items())
+        raise FormatError.at(
+            self.name,
+            after[0],
+            f"a periodic box of about {sizes} has wrapped the curve, which jumps {len(after)} times, to the "
+            f"lines {listed}; unwrap it, or put vertices on these edges if they are meant to be so long",
+        )
 
 
 def _closed(
@@ -47,7 +88,7 @@ def _closed(
         raise FormatError.at(
             name, lines[finite.argmin()], "a coordinate is not finite; give a number in its place"
         )
-    if len(vertices) > 1 and (vertices[0] == vertices[-1]).all():
+    if ends_meet(vertices):
         vertices, lines = vertices[:-1], lines[:-1]
     if len(vertices) < 3:
         raise FormatError.at(
@@ -64,11 +105,35 @@ def _closed(
     return vertices, lines
 
 
+def ends_meet(vertices: NDArray[np.float64]) -> bool:
+    """Tell whether the last of the vertices (n, 3) repeats the first, exactly or up to rounding."""
+    if len(vertices) < 2:
+        return False
+    # Quarters, so that the distance of two finite points is finite.
+    first, second, last, before = (vertices[[0, 1, -1, -2]] / 4).tolist()
+    edges = math.dist(first, second), math.dist(before, last)
+    return math.dist(first, last) <= REPEATED * min(edges) or bool((vertices[0] == vertices[-1]).all())
+
+
+def numbers(cells: Iterable[str]) -> list[float]:
+    """Read numbers, Fortran's 1.0D+00 among them. Raises `ValueError`."""
+    cells = list(cells)
+    try:
+        return list(map(float, cells))
+    except ValueError:
+        return [float(_number(cell)) for cell in cells]
+
+
+def _number(cell: str) -> str:
+    fortran = _FORTRAN.fullmatch(cell.strip())
+    return "e".join(part for part in fortran.groups() if part is not None) if fortran else cell
+
+
 def not_a_number(cells: Sequence[str]) -> int | None:
     """Give the index of the first cell that is no number, or None."""
     for index, cell in enumerate(cells):
         try:
-            float(cell)
+            numbers([cell])
         except ValueError:
             return index
     return None
