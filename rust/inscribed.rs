@@ -15,8 +15,7 @@ use crate::curve::{Curve, turning_angle};
 use crate::embedded::check_embedded;
 use crate::error::{Error, Result};
 use crate::measures::measure;
-use crate::neighbours::{Separation, for_each_close_pair};
-use crate::segments;
+use crate::sticks::Sticks;
 
 /// The inscribed knot of a curve, all components.
 pub struct Inscribed {
@@ -70,8 +69,9 @@ impl Inscribed {
     /// K_P with arcs short enough for no other strand to lie between a corner and its arc.
     pub fn clear_of_strands(curve: &Curve) -> Self {
         let mut tangents = half_edges(curve);
-        for (t, clearance) in tangents.iter_mut().zip(clearances(curve)) {
-            *t = t.min(0.45 * clearance);
+        let sticks = Sticks::new(curve);
+        for (i, t) in tangents.iter_mut().enumerate() {
+            *t = t.min(0.45 * sticks.room(i));
         }
         Self::with_tangents(curve, &tangents)
     }
@@ -164,27 +164,6 @@ fn half_edges(curve: &Curve) -> Vec<f64> {
         );
     }
     halves
-}
-
-/// Distance of each vertex to the edges that do not end there, as far as it is below the longest
-/// edge's half (a nearer end of such an edge is then closer than that edge).
-fn clearances(curve: &Curve) -> Vec<f64> {
-    let mut clearances = vec![f64::INFINITY; curve.n()];
-    let longest = (0..curve.components()).flat_map(|c| curve.edge_lengths(c)).fold(0., f64::max);
-    let separation = Separation::by_index(curve, &vec![1; curve.components()]);
-    for_each_close_pair(curve, &separation, 1.01 * longest, |i, j, _| {
-        for (i, j) in [(i, j), (j, i)] {
-            for (from, to) in [(curve.prev(j), j), (j, curve.next(j))] {
-                if from != i && to != i {
-                    let v = curve.vertices();
-                    let d = segments::to_point([v[from], v[to]], v[i]);
-                    clearances[i] = clearances[i].min(d);
-                }
-            }
-        }
-        1.01 * longest
-    });
-    clearances
 }
 
 fn pieces(v: &[DVec3], tangents: &[f64]) -> Vec<Piece> {

@@ -52,7 +52,7 @@ const ALONG: [f64; 4] = [2., 0.8, 0.32, 0.13];
 const RANDOM: [f64; 2] = [0.2, 0.08];
 const INWARDS: [f64; 2] = [0.9, 0.5];
 /// Sticks that are left at most of what can be loosened.
-const MOST_STICKS: usize = 1000;
+const MOST_STICKS: usize = 5000;
 
 /// The same curve with as few vertices as triangle moves leave; its strands may all but touch.
 ///

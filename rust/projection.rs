@@ -72,3 +72,37 @@ pub fn fewest_crossings(curve: &Curve) -> usize {
     };
     (0..3).map(turned).min().unwrap_or(0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(points: &[[f64; 3]]) -> Curve {
+        Curve::new(vec![points.iter().map(|&p| DVec3::from(p)).collect()]).unwrap()
+    }
+
+    #[test]
+    fn a_kink_has_the_crossing_that_is_seen() {
+        // The first edge runs along x below the third, which crosses it to the right.
+        let kink = curve(&[[-1., 0., 0.], [1., 0., 0.], [0., 1., 1.], [0., -1., 1.]]);
+        let [crossing] = crossings(&kink)[..] else { panic!("not one crossing") };
+        assert_eq!((crossing.over, crossing.under, crossing.right), (2.5, 0.5, true));
+        let above = curve(&[[-1., 0., 2.], [1., 0., 2.], [0., 1., 1.], [0., -1., 1.]]);
+        let [crossing] = crossings(&above)[..] else { panic!("not one crossing") };
+        assert_eq!((crossing.over, crossing.under, crossing.right), (0.5, 2.5, false));
+    }
+
+    #[test]
+    fn strands_one_bit_apart_are_told_apart() {
+        for (z, over) in [(f64::EPSILON, 2.5), (-f64::EPSILON, 0.5)] {
+            let near = curve(&[[-1., 0., 1.], [1., 0., 1.], [0., 1., 1. + z], [0., -1., 1. + z]]);
+            assert_eq!(crossings(&near)[0].over, over);
+        }
+    }
+
+    #[test]
+    fn the_view_with_fewest_crossings_counts() {
+        let kink = curve(&[[-1., 0., 0.], [1., 0., 0.], [0., 1., 1.], [0.1, -1., 1.2]]);
+        assert_eq!((crossings(&kink).len(), fewest_crossings(&kink)), (1, 0));
+    }
+}

@@ -153,6 +153,18 @@ impl Sticks {
         })
     }
 
+    /// Distance of vertex `i` from the edges that do not end there.
+    pub fn room(&self, i: usize) -> f64 {
+        let point = self.points[i];
+        self.tree.nearest(&Span::of(&[point]), f64::MAX, |j| {
+            if j == i || j == self.prev[i] {
+                f64::MAX
+            } else {
+                segments::to_point(self.edge(j), point)
+            }
+        })
+    }
+
     /// Whether an edge other than the two at `moving` meets a triangle, whose `corners` that are
     /// vertices it may share.
     fn meets(&self, triangle: [DVec3; 3], corners: [Option<usize>; 3], moving: usize) -> bool {
@@ -287,5 +299,75 @@ impl Tree {
             }
         }
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sticks(components: &[&[[f64; 3]]]) -> Sticks {
+        let component = |points: &&[[f64; 3]]| points.iter().map(|&p| DVec3::from(p)).collect();
+        Sticks::new(&Curve::new(components.iter().map(component).collect()).unwrap())
+    }
+
+    /// A square whose corner at (0, 0) is cut off by removing it; a strand passes the plane at x, y.
+    fn beside_a_strand(x: f64, y: f64) -> Sticks {
+        let square = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.3], [0., 1., 0.]];
+        let strand = [[x, y, -1.], [x, y, 1.], [9., 9., 1.], [9., 9., -1.]];
+        sticks(&[&square, &strand])
+    }
+
+    #[test]
+    fn a_vertex_is_removed_unless_a_strand_is_in_the_way() {
+        // The long side of the triangle is x + y = 1; the strand is beyond it by one bit, on it, inside.
+        let bit = f64::EPSILON;
+        for (y, removed) in [(0.5 + bit, true), (0.5, false), (0.5 - bit, false), (-1e-300, true)] {
+            let mut sticks = beside_a_strand(0.5, y);
+            assert_eq!(sticks.remove(0), removed, "{y}");
+            assert_eq!(sticks.n(), if removed { 7 } else { 8 });
+        }
+    }
+
+    #[test]
+    fn a_triangle_keeps_its_vertices() {
+        let mut sticks = sticks(&[&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]]);
+        assert!((0..3).all(|i| !sticks.remove(i)));
+    }
+
+    #[test]
+    fn a_vertex_moves_as_far_as_no_edge_is_in_the_way() {
+        let bit = f64::EPSILON;
+        // Beyond the strand, to where it would touch, and one bit less far.
+        let places =
+            [([0.9, 0.5, 0.1], false), ([0.5, 0.5, 0.1], false), ([0.5, 0.5 - bit, 0.1], true)];
+        for (place, moved) in places {
+            let mut sticks = beside_a_strand(0.5, 0.5);
+            assert_eq!(sticks.shift(0, DVec3::from(place)), moved, "{place:?}");
+            assert_eq!(sticks.point(0) == DVec3::from(place), moved);
+        }
+    }
+
+    #[test]
+    fn edges_do_not_fold_onto_each_other() {
+        let mut sticks = sticks(&[&[[0., 0., 0.], [2., 0., 0.], [2., 1., 0.], [0., 1., 0.5]]]);
+        assert!(!sticks.shift(1, DVec3::new(-1., 1., 0.)), "in the plane of its edges");
+    }
+
+    #[test]
+    fn removed_edges_are_in_nobodys_way() {
+        let square = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.3], [0., 1., 0.]];
+        let spike = [[0.2, 0.3, -1.], [0.3, 0.3, 1.], [0.4, 0.3, -1.], [0.3, 5., -2.]];
+        let mut sticks = sticks(&[&square, &spike]);
+        assert!(!sticks.remove(0), "the spike goes through the corner");
+        assert!(sticks.remove(5));
+        assert!(sticks.remove(0));
+        assert_eq!(sticks.curve().component(1).len(), 3);
+    }
+
+    #[test]
+    fn clearances_are_distances() {
+        let sticks = beside_a_strand(0.5, -0.25);
+        assert_eq!((sticks.clearance(0), sticks.room(0)), (0.25, 0.25f64.hypot(0.5)));
     }
 }
