@@ -1,6 +1,6 @@
 //! From any embedded curve to a jammed rope.
 //!
-//! A curve that holds a rope of a few thousand beads is collapsed as it is. A thinner one is first
+//! A curve that holds a rope of a thousand beads is collapsed as it is. A thinner one is first
 //! loosened ([`crate::loosen`]), and so is a rope that has jammed at many times the length that its
 //! diagram asks for: a knot of c crossings needs some 9 c radii of rope, 12 at most of the knots whose
 //! ropelength is known.
@@ -19,7 +19,7 @@ use crate::settings::Settings;
 use crate::tighten::{Outcome, Stage, Status, Tightener, scaled};
 
 /// Beads of a rope in the curve as it is, and of one in a loosened curve.
-const AS_IT_IS: usize = 4000;
+const AS_IT_IS: usize = 1200;
 const LOOSENED: usize = 50_000;
 /// A jammed rope is far too long if it is longer than this for each crossing and once more, and that
 /// for each component.
@@ -33,11 +33,12 @@ pub struct Collapse {
     given: Curve,
     /// The collapse of the curve as it is, if it holds a rope.
     direct: Option<Tightener>,
-    /// Whether it is to be loosened, or was.
-    loosened: bool,
+    /// Whether that will not do.
+    thin: bool,
     /// Begun anew after a restart: it takes seconds at most.
     #[serde(skip)]
     loosening: Option<Loosening>,
+    loosened: Option<Curve>,
     /// The collapse of the loosened curve.
     loose: Option<Tightener>,
 }
@@ -53,9 +54,15 @@ impl Collapse {
             Err(Error::TooThin { .. }) => None,
             Err(error) => return Err(error),
         };
-        let loosened = direct.is_none();
-        let given = curve.clone();
-        Ok(Self { settings, given, direct, loosened, loosening: None, loose: None })
+        Ok(Self {
+            settings,
+            given: curve.clone(),
+            thin: direct.is_none(),
+            direct,
+            loosening: None,
+            loosened: None,
+            loose: None,
+        })
     }
 
     /// Works for about `budget`, unless done before.
@@ -65,15 +72,15 @@ impl Collapse {
     pub fn advance(&mut self, budget: Duration) -> Result<Status> {
         let start = Instant::now();
         let left = || budget.saturating_sub(start.elapsed());
-        if let Some(direct) = self.direct.as_mut().filter(|_| !self.loosened) {
+        if let Some(direct) = self.direct.as_mut().filter(|_| !self.thin) {
             direct.advance(left());
-            self.loosened =
+            self.thin =
                 direct.status().outcome != Outcome::Running && is_far_too_long(direct.best());
         }
-        if self.loosened && self.loose.is_none() {
+        if self.thin && self.loose.is_none() {
             match self.loosen(left()) {
                 // A rope that is far too long is better than none.
-                Err(_) if self.direct.is_some() => self.loosened = false,
+                Err(_) if self.direct.is_some() => self.thin = false,
                 Err(error) => return Err(error),
                 Ok(()) => {}
             }
@@ -91,15 +98,16 @@ impl Collapse {
         }
         let loosening = self.loosening.as_mut().expect("just begun");
         if loosening.advance(budget)? {
-            self.loose = Some(Tightener::collapse(&loosening.curve(), LOOSENED, self.settings)?);
-            self.loosening = None;
+            let loosened = loosening.curve();
+            self.loose = Some(Tightener::collapse(&loosened, LOOSENED, self.settings)?);
+            (self.loosened, self.loosening) = (Some(loosened), None);
         }
         Ok(())
     }
 
-    /// Whether the curve was loosened first, so that little of its shape is left.
-    pub fn loosened(&self) -> bool {
-        self.loosened
+    /// The loosened curve, if it was loosened, so that little of the shape it had is left.
+    pub fn loosened(&self) -> Option<&Curve> {
+        self.loosened.as_ref()
     }
 
     /// The shortest rope so far, its R_s = 1, its centre at the origin.
@@ -117,7 +125,7 @@ impl Collapse {
     pub fn status(&self) -> Status {
         let best = measure(&self.best());
         match (&self.loose, &self.direct) {
-            (Some(sono), _) | (None, Some(sono)) if self.loose.is_some() || !self.loosened => {
+            (Some(sono), _) | (None, Some(sono)) if self.loose.is_some() || !self.thin => {
                 Status { best, ..sono.status() }
             }
             _ => Status {
@@ -141,4 +149,40 @@ fn is_far_too_long(rope: &Curve) -> bool {
     let crossings = |rope| simplified(rope).map(|simple| fewest_crossings(&simple));
     let length = measure(rope).l_p;
     length > most(0) && crossings(rope).is_ok_and(|crossings| length > most(crossings))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    /// An ellipse, which holds a rope 4 `slender`^2 radii long or a little longer.
+    fn ellipse(slender: f64) -> Curve {
+        let angle = |i: usize| std::f64::consts::TAU * i as f64 / 200.;
+        let vertex = |i| DVec3::new(slender * angle(i).cos(), angle(i).sin(), 0.);
+        Curve::new(vec![(0..200).map(vertex).collect()]).unwrap()
+    }
+
+    #[test]
+    fn a_knot_without_crossings_needs_little_rope() {
+        assert!(!is_far_too_long(&ellipse(2.5)));
+        assert!(is_far_too_long(&ellipse(3.)));
+    }
+
+    #[test]
+    fn a_rope_that_jams_far_too_long_is_loosened() {
+        let settings = Settings { anneal_sweeps: 1, ..Default::default() };
+        let jammed = Tightener::anneal(&ellipse(4.), 200, settings).unwrap();
+        let mut collapse = Collapse::new(&ellipse(4.), settings).unwrap();
+        assert!(!collapse.thin);
+        collapse.direct = Some(jammed);
+        let mut stages = vec![];
+        while collapse.advance(Duration::from_micros(100)).unwrap().outcome == Outcome::Running {
+            stages.push(collapse.status().stage);
+        }
+        assert!(stages.contains(&Stage::Loosen), "{stages:?}");
+        assert!(collapse.loosened().is_some());
+        assert!(measure(&collapse.best()).l_p < 7.);
+    }
 }

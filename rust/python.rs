@@ -244,8 +244,8 @@ impl Collapse {
         Status::new(py, &self.0.status())
     }
 
-    fn loosened(&self) -> bool {
-        self.0.loosened()
+    fn loosened<'py>(&self, py: Python<'py>) -> PyResult<Option<Vec<Bound<'py, PyArray2<f64>>>>> {
+        self.0.loosened().map(|curve| arrays(py, curve)).transpose()
     }
 
     fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {

@@ -77,14 +77,6 @@ def test_a_thick_curve_is_collapsed_as_it_is() -> None:
     assert not collapsed(library.start("8_18")[0]).loosened()
 
 
-def test_a_rope_that_jams_far_too_long_is_loosened() -> None:
-    # A spiral wound up in a plane and back in the next: an unknot that SONO alone does not unwind.
-    t = np.linspace(0, 40 * np.pi, 2000)
-    spiral = np.column_stack([(3 + t / np.pi) * np.cos(t), (3 + t / np.pi) * np.sin(t), 0 * t])
-    collapse = collapsed(np.vstack([spiral, (spiral + np.array([0, 0, 2.5]))[::-1]]))
-    assert collapse.status().best.l_p < 7
-
-
 def test_links_keep_their_components_apart() -> None:
     small, large = entangled(12, 1), 1e5 * entangled(12, 2)
     for link in ([small, large + 3e6], [small, large + small.mean(axis=0)], [large, small + 1, 2 - small]):
