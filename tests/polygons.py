@@ -40,7 +40,7 @@ def meander(steps: int, seed: int) -> Vertices:
         if (x + 2 * dx, y + 2 * dy) not in filled:
             cells.append((x + 2 * dx, y + 2 * dy))
             filled |= {(x + dx, y + dy), cells[-1]}
-    onward = {}
+    onward: dict[Any, Any] = {}
     for x, y in filled:
         sides = {
             (x, y - 1): ((x, y), (x + 1, y)),
@@ -55,7 +55,7 @@ def meander(steps: int, seed: int) -> Vertices:
 def lattice(steps: int, seed: int) -> Vertices:
     """An unknot in the cubic lattice, grown by pushing random edges aside."""
     random = np.random.default_rng(seed)
-    onward = {(0, 0, 0): (1, 0, 0), (1, 0, 0): (1, 1, 0), (1, 1, 0): (0, 1, 0), (0, 1, 0): (0, 0, 0)}
+    onward: dict[Any, Any] = {(0, 0, 0): (1, 0, 0), (1, 0, 0): (1, 1, 0), (1, 1, 0): (0, 1, 0), (0, 1, 0): (0, 0, 0)}
     points = list(onward)
     while len(points) < steps:
         a = points[random.integers(len(points))]

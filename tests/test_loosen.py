@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 import pytest
-from tests.polygons import entangled, equilateral, gaussian, knotted_arc, lattice, meander
+from polygons import entangled, equilateral, gaussian, knotted_arc, lattice, meander
 
 from sono import _core, library, tighten
 from sono._core import Collapse
