@@ -1,9 +1,9 @@
 //! The core of sono: tight knots on the bead rope.
 //!
-//! **Curve -> measures** is one road, **curve -> rope -> sweeps of SONO -> Newton steps of the polish ->
-//! tight curve** the other. Dependencies point one way only:
-//! `error, segments, curve <- neighbours <- measures <- inscribed, embedded, procedures <- rope <- tighten
-//! <- polish <- python`.
+//! **Curve -> measures** is one road, **curve -> loose curve -> rope -> sweeps of SONO -> Newton steps of
+//! the polish -> tight curve** the other. Dependencies point one way only:
+//! `error, segments, curve <- neighbours, sticks <- measures, projection <- inscribed, embedded, procedures
+//! <- rope, loosen <- tighten <- collapse, polish <- python`; `modular` stands alone.
 
 pub mod collapse;
 pub mod curve;
