@@ -1,12 +1,14 @@
 //! The Python module `sono._core`: arrays in, arrays out, the interpreter released while Rust works.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::create_exception;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::polish::Forces;
 use crate::{Curve, Error, Outcome, Stage, check_embedded};
@@ -16,10 +18,31 @@ create_exception!(
     CurveError,
     PyValueError,
     "A curve that cannot be used; `places` lists what is wrong with it as (component, vertex), both\n\
-     counted from 0, the vertex None where a whole component is meant."
+     counted from 0, the vertex None where a whole component is meant. `needed` is the least n that\n\
+     will do, None where no n will."
 );
 
+create_exception!(
+    sono,
+    PanicError,
+    PyRuntimeError,
+    "The core came upon a bug of its own. What it worked on is lost, and nothing else."
+);
+
+/// Works with the interpreter released. A panic becomes an exception that handlers of errors catch.
+fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| {
+        let text = panic.downcast_ref::<&str>().map(|text| (*text).to_string());
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        PanicError::new_err(text.unwrap_or_default())
+    })
+}
+
 fn to_python(error: Error) -> PyErr {
+    let needed = match error {
+        Error::TooCoarse { needed, .. } => Some(needed),
+        _ => None,
+    };
     let places = match error {
         Error::Setting { .. } => return PyValueError::new_err(error.to_string()),
         Error::TooFewVertices { component, .. } => vec![(component, None)],
@@ -36,7 +59,11 @@ fn to_python(error: Error) -> PyErr {
         | Error::TooCoarse { .. } => vec![],
     };
     let raised = CurveError::new_err(error.to_string());
-    Python::attach(|py| raised.value(py).setattr("places", places)).map_or_else(|e| e, |()| raised)
+    let explained = |py: Python<'_>| {
+        raised.value(py).setattr("places", places)?;
+        raised.value(py).setattr("needed", needed)
+    };
+    Python::attach(explained).map_or_else(|e| e, |()| raised)
 }
 
 type Arrays<'py> = Vec<PyReadonlyArray2<'py, f64>>;
@@ -123,7 +150,8 @@ impl From<crate::Measures> for Measures {
 #[pyfunction]
 fn measure(py: Python<'_>, components: Arrays<'_>) -> PyResult<Measures> {
     let curve = curve(components)?;
-    py.detach(|| check_embedded(&curve).map(|()| crate::measure(&curve).into())).map_err(to_python)
+    released(py, || check_embedded(&curve).map(|()| crate::measure(&curve).into()))?
+        .map_err(to_python)
 }
 
 #[pyfunction]
@@ -133,7 +161,7 @@ fn refine<'py>(
     n: usize,
 ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
     let curve = curve(components)?;
-    let refined = py.detach(|| crate::refine(&curve, n, 0.25));
+    let refined = released(py, || crate::refine(&curve, n, 0.25))?;
     arrays(py, &refined)
 }
 
@@ -144,7 +172,7 @@ fn simplify<'py>(
     components: Arrays<'py>,
 ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
     let curve = curve(components)?;
-    let simple = py.detach(|| crate::simplified(&curve)).map_err(to_python)?;
+    let simple = released(py, || crate::simplified(&curve))?.map_err(to_python)?;
     arrays(py, &simple)
 }
 
@@ -155,7 +183,7 @@ type CrossingArrays<'py> =
 #[pyfunction]
 fn crossings<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<CrossingArrays<'py>> {
     let curve = curve(components)?;
-    let found = py.detach(|| crate::projection::crossings(&curve));
+    let found = released(py, || crate::projection::crossings(&curve))?;
     Ok((
         PyArray1::from_iter(py, found.iter().map(|c| c.over)),
         PyArray1::from_iter(py, found.iter().map(|c| c.under)),
@@ -169,7 +197,7 @@ fn determinant(py: Python<'_>, n: usize, entries: Vec<(usize, usize, u64)>) -> P
     if entries.iter().any(|&(i, j, _)| i.max(j) >= n) {
         return Err(PyValueError::new_err("an entry lies outside the matrix"));
     }
-    Ok(py.detach(|| crate::modular::determinant(n, &entries)))
+    released(py, || crate::modular::determinant(n, &entries))
 }
 
 #[pyfunction]
@@ -178,7 +206,7 @@ fn loosen<'py>(
     components: Arrays<'py>,
 ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
     let curve = curve(components)?;
-    let loose = py.detach(|| crate::loosened(&curve)).map_err(to_python)?;
+    let loose = released(py, || crate::loosened(&curve))?.map_err(to_python)?;
     arrays(py, &loose)
 }
 
@@ -231,17 +259,17 @@ impl Collapse {
     fn new(py: Python<'_>, components: Arrays<'_>, settings: &str) -> PyResult<Self> {
         let curve = curve(components)?;
         let settings = settings_from_json(settings)?;
-        py.detach(|| crate::Collapse::new(&curve, settings)).map(Self).map_err(to_python)
+        released(py, || crate::Collapse::new(&curve, settings))?.map(Self).map_err(to_python)
     }
 
     fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
         let budget = budget(seconds)?;
-        let status = py.detach(|| self.0.advance(budget)).map_err(to_python)?;
+        let status = released(py, || self.0.advance(budget))?.map_err(to_python)?;
         Status::new(py, &status)
     }
 
     fn status(&self, py: Python<'_>) -> PyResult<Status> {
-        Status::new(py, &self.0.status())
+        Status::new(py, &released(py, || self.0.status())?)
     }
 
     fn loosened<'py>(&self, py: Python<'py>) -> PyResult<Option<Vec<Bound<'py, PyArray2<f64>>>>> {
@@ -249,17 +277,17 @@ impl Collapse {
     }
 
     fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
-        arrays(py, &self.0.best())
+        arrays(py, &released(py, || self.0.best())?)
     }
 
     fn state(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| serde_json::to_string(&self.0))
+        released(py, || serde_json::to_string(&self.0))?
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
     #[staticmethod]
     fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
-        py.detach(|| serde_json::from_str(state))
+        released(py, || serde_json::from_str(state))?
             .map(Self)
             .map_err(|e| PyValueError::new_err(format!("not a state of a Collapse: {e}")))
     }
@@ -280,23 +308,23 @@ impl Tightener {
     ) -> PyResult<Self> {
         let curve = curve(components)?;
         let settings = settings_from_json(settings)?;
-        py.detach(|| match stage {
+        released(py, || match stage {
             "anneal" => crate::Tightener::anneal(&curve, n, settings),
             "reanneal" => crate::Tightener::reanneal(&curve, n, settings),
             _ => crate::Tightener::settle(&curve, n, settings),
-        })
+        })?
         .map(Self)
         .map_err(to_python)
     }
 
     fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
         let budget = budget(seconds)?;
-        let status = py.detach(|| self.0.advance(budget));
+        let status = released(py, || self.0.advance(budget))?;
         Status::new(py, &status)
     }
 
     fn status(&self, py: Python<'_>) -> PyResult<Status> {
-        Status::new(py, &self.0.status())
+        Status::new(py, &released(py, || self.0.status())?)
     }
 
     fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
@@ -304,13 +332,13 @@ impl Tightener {
     }
 
     fn state(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| serde_json::to_string(&self.0))
+        released(py, || serde_json::to_string(&self.0))?
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
     #[staticmethod]
     fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
-        py.detach(|| serde_json::from_str(state))
+        released(py, || serde_json::from_str(state))?
             .map(Self)
             .map_err(|e| PyValueError::new_err(format!("not a state of a Tightener: {e}")))
     }
@@ -359,35 +387,35 @@ impl Polish {
         seed: u64,
     ) -> PyResult<Self> {
         let curve = curve(components)?;
-        py.detach(|| crate::Polish::new(&curve, n, passing, seed)).map(Self).map_err(to_python)
+        released(py, || crate::Polish::new(&curve, n, passing, seed))?.map(Self).map_err(to_python)
     }
 
     fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<PolishStatus> {
         let budget = budget(seconds)?;
-        let status = py.detach(|| self.0.advance(budget));
+        let status = released(py, || self.0.advance(budget))?;
         PolishStatus::new(py, &status)
     }
 
     fn status(&self, py: Python<'_>) -> PyResult<PolishStatus> {
-        PolishStatus::new(py, &self.0.status())
+        PolishStatus::new(py, &released(py, || self.0.status())?)
     }
 
     fn best<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
-        arrays(py, &self.0.best())
+        arrays(py, &released(py, || self.0.best())?)
     }
 
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<ForceArrays<'py>> {
-        force_arrays(py, self.0.forces())
+        force_arrays(py, released(py, || self.0.forces())?)
     }
 
     fn state(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| serde_json::to_string(&self.0))
+        released(py, || serde_json::to_string(&self.0))?
             .map_err(|e| PyValueError::new_err(e.to_string()))
     }
 
     #[staticmethod]
     fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
-        py.detach(|| serde_json::from_str(state))
+        released(py, || serde_json::from_str(state))?
             .map(Self)
             .map_err(|e| PyValueError::new_err(format!("not a state of a Polish: {e}")))
     }
@@ -415,8 +443,7 @@ fn force_arrays(py: Python<'_>, forces: Forces) -> PyResult<ForceArrays<'_>> {
 #[pyfunction]
 fn balance<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<ForceArrays<'py>> {
     let curve = curve(components)?;
-    let forces = py
-        .detach(|| check_embedded(&curve).map(|()| crate::polish::balance(&curve)))
+    let forces = released(py, || check_embedded(&curve).map(|()| crate::polish::balance(&curve)))?
         .map_err(to_python)?;
     force_arrays(py, forces)
 }
@@ -439,9 +466,19 @@ fn settings_from_json(settings: &str) -> PyResult<crate::Settings> {
 
 #[pymodule]
 mod _core {
+    use super::{Bound, PyAnyMethods, PyModule, PyResult, PyTuple};
+
     #[pymodule_export]
     use super::{
-        Collapse, CurveError, Measures, Polish, PolishStatus, Status, Tightener, balance,
-        crossings, default_settings, determinant, loosen, measure, refine, simplify,
+        Collapse, CurveError, Measures, PanicError, Polish, PolishStatus, Status, Tightener,
+        balance, crossings, default_settings, determinant, loosen, measure, refine, simplify,
     };
+
+    /// What an error has that nobody explained further.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let error = module.getattr("CurveError")?;
+        error.setattr("places", PyTuple::empty(module.py()))?;
+        error.setattr("needed", module.py().None())
+    }
 }

@@ -10,11 +10,14 @@ import sys
 import time
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import QUICK, Sono, Spawn, vertices
 
 from sono import formats, measure, tables
+from sono._core import PanicError
+from sono.pipeline import Run
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
 
@@ -179,11 +182,47 @@ def test_an_open_chain_is_told(folder: Path, sono: Sono) -> None:
         assert "sono: chain.txt:20: the edge that closes the curve, from here back to line 1" in loud.stderr
 
 
-def test_too_few_vertices_do_not_stop_the_larger_n(folder: Path, sono: Sono) -> None:
-    result = sono("tighten", "3_1.txt", "-n", "12,60", *QUICK)
+@pytest.mark.parametrize("method", ["both", "sono", "polish"])
+def test_too_few_vertices_do_not_stop_the_larger_n(folder: Path, sono: Sono, method: str) -> None:
+    result = sono("tighten", "3_1.txt", "-n", "12,60", "--method", method, *QUICK)
     assert result.exit_code == 1
     assert result.stderr.startswith("sono: 3_1.txt: 12 vertices are too few: ")
     assert names(folder) == ["3_1.n60.txt"]
+
+
+def test_a_trial_that_fails_is_told(folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch) -> None:
+    begin, anneals = Run._engine, 0
+
+    def engine(self: Run, stage: Any, n: int) -> Any:
+        nonlocal anneals
+        anneals += stage == "anneal"
+        if stage == "anneal" and anneals == 2:
+            raise PanicError("index out of bounds")
+        return begin(self, stage, n)
+
+    monkeypatch.setattr(Run, "_engine", engine)
+    result = sono("tighten", "3_1.txt", "-n", "60", "--trials", "3", "--set", "anneal_sweeps=5000")
+    assert (result.exit_code, result.stdout.splitlines()[1].split("\t")[-1]) == (0, "tight")
+    assert result.stderr.endswith("; the shortest was taken; 1 failed: index out of bounds\n")
+    assert "method both  trials 3 " in (folder / "3_1.n60.txt").read_text()
+
+
+def test_a_bug_in_the_core_stays_with_its_n(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begin = Run._engine
+
+    def engine(self: Run, stage: Any, n: int) -> Any:
+        if n == 70:
+            raise PanicError("index out of bounds")
+        return begin(self, stage, n)
+
+    monkeypatch.setattr(Run, "_engine", engine)
+    result = sono("tighten", "3_1.txt", "Hopf.txt", "-n", "60,70,80", *QUICK)
+    assert result.exit_code == 1
+    message = "n = 70: the core came upon a bug (index out of bounds); please report it"
+    assert result.stderr == f"sono: 3_1: {message}\nsono: Hopf: {message}\n"
+    assert names(folder) == ["3_1.n60.txt", "3_1.n80.txt", "Hopf.n60.txt", "Hopf.n80.txt"]
 
 
 def test_too_few_vertices_for_the_components(sono: Sono) -> None:

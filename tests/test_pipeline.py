@@ -2,12 +2,15 @@
 
 import json
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
 import sono
+from sono import pipeline
+from sono._core import PanicError
 from sono.pipeline import Method, Progress, Run, Stopped, as_curve, check_settings, default_settings
 
 QUICK = {"anneal_sweeps": 500, "settle_sweeps": 100, "tolerance": 1e-2}
@@ -193,3 +196,70 @@ def test_a_target_out_of_reach_can_be_left() -> None:
     run.next_target()
     direct = sono.tighten(sono.start("3_1"), 60, settings=QUICK)
     assert np.array_equal(run.tighten().curve, direct.curve)
+
+
+def refuse(monkeypatch: pytest.MonkeyPatch, error: Exception, when: Callable[[int, str, int], bool]) -> None:
+    """Let those stages fail of which `when` says so, given their number from 1, their name and n."""
+    begin, begun = Run._engine, 0
+
+    def engine(self: Run, stage: pipeline.Stage, n: int) -> Any:
+        nonlocal begun
+        begun += 1
+        if when(begun, stage, n):
+            raise error
+        return begin(self, stage, n)
+
+    monkeypatch.setattr(Run, "_engine", engine)
+
+
+@pytest.mark.parametrize("stage", ["collapse", "anneal", "trial"])
+@pytest.mark.parametrize("error", [sono.CurveError("too thin"), PanicError("index out of bounds")])
+def test_a_trial_that_fails_is_one_less(
+    monkeypatch: pytest.MonkeyPatch, error: Exception, stage: str
+) -> None:
+    refuse(monkeypatch, error, lambda number, what, n: number > 3 and what == stage)
+    tight = sono.tighten(sono.start("3_1"), 60, trials=3, settings=QUICK)
+    assert tight.converged
+    assert tight.failed == 2 * [str(error)]
+    assert tight.shapes == [pytest.approx(tight.measures.l_a, rel=1e-6)]
+
+
+def test_later_targets_outlive_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = Run(sono.start("Hopf"), [20, 60], {"seed": 1})
+    assert run.tighten().converged
+    run.next_target()
+    assert run.tighten().converged
+    refuse(monkeypatch, sono.CurveError("too coarse"), lambda _, stage, n: (stage, n) == ("polish", 130))
+    run = Run(sono.start("3_1"), [60, 130, 140], QUICK)
+    shapes = run.tighten().shapes
+    run.next_target()
+    with pytest.raises(sono.CurveError, match="too coarse"):
+        run.tighten()
+    run.next_target()
+    tight = run.tighten()
+    assert (tight.converged, tight.measures.n, tight.shapes) == (True, 140, shapes)
+
+
+def test_a_later_offset_that_fails_leaves_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = sono.tighten(sono.start("3_1"), 130, trials=1, settings=QUICK)
+    polishes = 0
+
+    def third(number: int, stage: str, n: int) -> bool:
+        nonlocal polishes
+        polishes += stage == "polish"
+        return polishes > 1
+
+    refuse(monkeypatch, sono.CurveError("too coarse"), third)
+    other = sono.tighten(sono.start("3_1"), 130, trials=1, settings=QUICK)
+    assert other.converged
+    assert other.measures.l_p == pytest.approx(one.measures.l_p, rel=1e-3)
+
+
+def test_where_no_trial_succeeds_the_error_is_told() -> None:
+    with pytest.raises(sono.CurveError, match="12 vertices are too few") as caught:
+        sono.tighten(sono.start("3_1"), 12, settings=QUICK)
+    assert 12 < (caught.value.needed or 0) < 40
+    crossing = np.array([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])
+    with pytest.raises(sono.CurveError, match="crosses itself") as caught:
+        sono.tighten(crossing, 60)
+    assert caught.value.needed is None

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sono import library, measure, search
+from sono import _core, library, measure, pipeline, search
+from sono._core import CurveError, PanicError
 from sono.invariants import fingerprint
 from sono.pipeline import Stopped
 from sono.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine, reseat
@@ -76,6 +77,45 @@ def test_a_start_that_cannot_be_tightened_is_counted() -> None:
     assert (counted.trials, counted.changed, counted.failed) == (1, 0, 1)
 
 
+@pytest.mark.parametrize("stage", ["start", "collapse", "anneal", "polish"])
+def test_a_trial_that_fails_is_a_failed_trial(monkeypatch: pytest.MonkeyPatch, stage: str) -> None:
+    begun = 0
+
+    def failing(make: Callable[..., Any]) -> Callable[..., Any]:
+        def begin(*arguments: Any) -> Any:
+            nonlocal begun
+            begun += 1
+            if begun == 2:
+                raise PanicError("index out of bounds")
+            return make(*arguments)
+
+        return begin
+
+    if stage == "start":
+        monkeypatch.setattr(Source, "start", failing(Source.start))
+    else:
+        engine = {"collapse": "Collapse", "anneal": "Tightener", "polish": "Polish"}[stage]
+        monkeypatch.setattr(search, engine, failing(getattr(_core, engine)))
+    found = run("3_1", 3)
+    assert (found.trials, found.failed, found.changed) == (3, 1, 0)
+    assert found.minima[0].tight
+
+
+def test_what_cannot_be_refined_or_finished_leaves_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    shape = attempt(source("3_1"), 0)
+    minimum = refine(shape)
+    assert minimum
+
+    def refuse(*_: object) -> None:
+        raise CurveError("too coarse")
+
+    monkeypatch.setattr(search, "Polish", refuse)
+    monkeypatch.setattr(pipeline, "Polish", refuse)
+    assert refine(shape) is None
+    assert finish(minimum, 300) is None
+    assert reseat(minimum) is minimum
+
+
 def test_refined_and_finished_ropes_are_tight() -> None:
     minimum = refine(attempt(source("3_1"), 0))
     assert minimum
@@ -84,6 +124,7 @@ def test_refined_and_finished_ropes_are_tight() -> None:
     assert minimum.length == pytest.approx(32.7429, abs=1e-3)
     assert measure(minimum.curve).dl == pytest.approx(search.FINE_EDGE, rel=0.01)
     fine = finish(minimum, 480)
+    assert fine
     assert fine.tight
     assert (fine.variant, measure(fine.curve).n) == (minimum.variant, 480)
     assert fine.length == pytest.approx((4 * 32.739828 + 32.755154) / 5, abs=2e-6)  # README

@@ -3,6 +3,7 @@
 Components are a list of (n_i, 3) float64 arrays. Lengths are in the unit of the vertices.
 """
 
+from collections.abc import Sequence
 from typing import Literal, TypeAlias, final
 
 import numpy as np
@@ -12,6 +13,7 @@ __all__ = [
     "Collapse",
     "CurveError",
     "Measures",
+    "PanicError",
     "Polish",
     "PolishStatus",
     "Status",
@@ -34,9 +36,16 @@ _Forces: TypeAlias = tuple[
 _Stage: TypeAlias = Literal["loosen", "collapse", "anneal", "reanneal", "settle"]
 
 class CurveError(ValueError):
-    """A curve that cannot be used, and the places: (component, vertex), vertex None for a whole component."""
+    """A curve that cannot be used, and the places: (component, vertex), vertex None for a whole component.
 
-    places: list[tuple[int, int | None]]
+    `needed` is the least n that will do, None where no n will.
+    """
+
+    places: Sequence[tuple[int, int | None]]
+    needed: int | None
+
+class PanicError(RuntimeError):
+    """The core came upon a bug of its own. What it worked on is lost, and nothing else."""
 
 @final
 class Measures:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from sono import contacts, formats, sources
-from sono._core import CurveError, Measures
+from sono._core import CurveError, Measures, PanicError
 from sono.formats import FormatError, VertexFile, is_stream
 from sono.pipeline import TRIALS, Method, Progress, Run, Stopped, Tight, default_settings, forces, measure
 from sono.tables import Row
@@ -268,10 +268,11 @@ class _Task:
                 return
             except CurveError as error:
                 trouble = _located(error, self.file)
-                if self.run.curve is self.run.start and not self.run.shapes:
+                if error.needed is None:
                     raise trouble from error
-                self.failed[n] = str(trouble)
-                yield Result(None, str(trouble))
+                yield self.out_of_reach(n, str(trouble))
+            except PanicError as error:
+                yield self.out_of_reach(n, f"{self.job.name}: n = {n}: {_as_bug(error)}")
             else:
                 if n in self.todo:
                     reached = SETTLED if self.job.method == "sono" else TIGHT
@@ -294,6 +295,11 @@ class _Task:
             with suppress(FormatError):  # a full disk may have room again before the run is stopped
                 self.save()
 
+    def out_of_reach(self, n: int, trouble: str) -> Result:
+        """Remember why there is no rope of n vertices."""
+        self.failed[n] = trouble
+        return Result(None, trouble)
+
     def stopped(self, why: str) -> Result:
         """Write the best state of the run."""
         best = self.run.best()
@@ -303,15 +309,16 @@ class _Task:
         return Result(row, f"{self.job.name}: {why}; {place}{self.way_on()}")
 
     def tried(self, tight: Tight) -> str | None:
-        """Say once which shapes the trials found."""
-        if self.told or len(tight.shapes) < 2:
+        """Say once which shapes the trials found, and which of them failed."""
+        if self.told or len(tight.shapes) + len(tight.failed) < 2:
             return None
         self.told = True
         found = Counter(f"{length:.4f}" for length in sorted(tight.shapes))
         hits = ", ".join(f"{length} ({times} of them)" for length, times in found.items())
         n = sum(map(len, self.run.shape or []))
         trials = f"{len(tight.shapes)} trials at n = {n}"
-        return f"{self.job.name}: {trials} ended at L_a {hits}; the shortest was taken"
+        lost = "".join(f"; {times} failed: {why}" for why, times in Counter(tight.failed).items())
+        return f"{self.job.name}: {trials} ended at L_a {hits}; the shortest was taken{lost}"
 
     def deliver(self, n: int, tight: Tight, status: str) -> tuple[Row, str | None]:
         """Write what was asked for at n."""
@@ -332,7 +339,7 @@ class _Task:
                 measures = measured(output)[1]
         except FormatError as error:
             unwritten = str(error)
-        work = {"trials": max(len(tight.shapes), 1), "seconds": tight.seconds} | {
+        work = {"trials": _trials(tight), "seconds": tight.seconds} | {
             key: getattr(tight, key) for key in (*PHYSICS, "sweeps", "factorisations")
         }
         return _rope_row(self.job, None if unwritten else output, measures, status, **work), unwritten
@@ -393,6 +400,10 @@ def _located(error: CurveError, file: VertexFile) -> FormatError:
     return FormatError(f"{first}: {error}{other}")
 
 
+def _as_bug(error: PanicError) -> str:
+    return f"the core came upon a bug ({error}); please report it"
+
+
 def _rope_row(job: Job, output: str | None, measures: Measures, status: str, **more: Any) -> Row:
     overlap = max(0.0, 2 - 2 * measures.sr)
     return as_row(job.name, output, measures, overlap=overlap, status=status, **more)
@@ -414,11 +425,15 @@ def _tolerance(job: Job) -> float:
     return float((default_settings() | job.settings)["tolerance"])
 
 
+def _trials(tight: Tight) -> int:
+    return max(len(tight.shapes) + len(tight.failed), 1)
+
+
 def _header(job: Job, tight: Tight, status: str) -> list[str]:
     physics = (f"{key} {value:.1e}" for key in PHYSICS if (value := getattr(tight, key)) is not None)
     return [
         *title(job.name, status, tight.measures),
-        f"method {job.method}  trials {max(len(tight.shapes), 1)}  settings {json.dumps(job.settings)}",
+        f"method {job.method}  trials {_trials(tight)}  settings {json.dumps(job.settings)}",
         "  ".join(physics) or "not polished",
     ]
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
-from sono._core import Collapse, CurveError, Measures, Polish, PolishStatus, Status, Tightener
+from sono._core import Collapse, CurveError, Measures, PanicError, Polish, PolishStatus, Status, Tightener
 
 Curve = list[NDArray[np.float64]]
 Method = Literal["both", "sono", "polish"]
@@ -127,7 +127,7 @@ def tighten(
     "sono" and "polish" do without the other. After `time_limit` seconds the best state so far is returned,
     with `converged` False. `settings` replaces some of `default_settings()`, which are SONO's. `watch` is
     called about ten times a second; what it raises ends the run and passes through. Raises `CurveError` for a
-    curve that cannot be tightened, `ValueError` for a wrong n, method or setting.
+    curve that cannot be tightened (with so few vertices), `ValueError` for a wrong n, method or setting.
     """
     settings = {**(settings or {}), "seed": index(seed)}
     run = Run(as_curve(vertices), [index(n)], settings, method, index(trials))
@@ -168,7 +168,8 @@ class Tight:
     `curve` holds one (n_i, 3) array for each component, scaled to R_s = 1; `measures` is what it measures.
     `converged` tells whether the last engine reached its end: the polish a residual below 1e-8 at mu = 1e-11,
     SONO the dispersion and overlaps that the settings ask for. `shapes` has the L_a of each trial's shape,
-    all at the same coarse n. `sweeps`, `factorisations` and `seconds` count from the start of the run.
+    all at the same coarse n, and `failed` says why other trials came to nothing. `sweeps`, `factorisations`
+    and `seconds` count from the start of the run.
 
     Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
     those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
@@ -180,6 +181,7 @@ class Tight:
     measures: Measures
     converged: bool
     shapes: list[float]
+    failed: list[str]
     sweeps: int
     factorisations: int
     seconds: float
@@ -193,7 +195,7 @@ class Tight:
 class Progress:
     """Where a run stands: the rung it is on (`stage`, `n`), the n it climbs to, and the core's status.
 
-    `trial` counts the shapes tried, this one included, from 1.
+    `trial` counts the trials, this one included, from 1.
     """
 
     stage: Stage
@@ -220,6 +222,7 @@ class Run:
     rungs: list[Rung] = field(default_factory=list)
     shape: Curve | None = None
     shapes: list[float] = field(default_factory=list)
+    failed: list[str] = field(default_factory=list)
     worker: Engine | None = None
     offset: int = 0
     rival: Polish | None = None
@@ -249,11 +252,15 @@ class Run:
     def tighten(self, watch: Callable[[Progress], None] = lambda _: None) -> Tight:
         """Tighten at the first target; `watch` is called between slices and rungs and may raise `Stopped`.
 
-        Called once more it gives the same again. Raises `CurveError` for a curve that cannot be tightened,
-        or not with so few vertices.
+        Called once more it gives the same again. A trial that fails is only one trial less. Raises
+        `CurveError` for a curve that cannot be tightened, or not with so few vertices.
         """
         while True:
-            self._climb(watch)
+            try:
+                self._climb(watch)
+            except (CurveError, PanicError) as error:
+                self._fail(error)
+                continue
             if self._is_last():
                 return self._tight(self._better())
             if self.rungs == [("polish", self.targets[0])]:
@@ -276,8 +283,10 @@ class Run:
             self.rungs = self._climb_to_target() if fine else self._anneal()
         elif reached or self.method == "polish":
             self.rungs = self._climb_to_target()
+        elif self.shape:  # it could not be refined to that n
+            self.curve, self.rungs = self.shape, self._climb_to_target()
         else:
-            self.curve, self.shapes, self.rungs = self.start, [], [("collapse", 0)]
+            self.curve, self.failed, self.rungs = self.start, [], [("collapse", 0)]
 
     def best(self) -> Tight:
         """Return the best state as `tighten` was stopped, as unconverged as it is."""
@@ -316,7 +325,7 @@ class Run:
         stage, n = self.rungs[0]
 
         def look(status: Status | PolishStatus) -> None:
-            watch(Progress(stage, n or status.best.n, self.targets[0], len(self.shapes) + 1, status))
+            watch(Progress(stage, n or status.best.n, self.targets[0], self._trials_done() + 1, status))
 
         if self.worker is None:
             self.worker = self._engine(stage, n)
@@ -352,7 +361,7 @@ class Run:
 
     def _engine(self, stage: Stage, n: int) -> Engine:
         """Begin a rung."""
-        trial = len(self.shapes)
+        trial = self._trials_done()
         seed = (self.settings.get("seed", 0) + trial + self.offset) % 2**64
         if stage == "trial" or stage == "climb" or stage == "polish":
             return Polish(self.curve, n, stage == "climb", seed)
@@ -385,18 +394,39 @@ class Run:
                 self.rungs = self._trial(tight.measures.l_p)
         elif stage == "trial":
             self._compare(tight.measures)
-            if self._enough():
-                self.curve = cast("Curve", self.shape)
-                self.rungs = self._climb_to_target()
-            else:
-                self.curve = self.start
-                self.rungs = [("collapse", 0)]
+            self._next_trial()
+
+    def _fail(self, error: CurveError | PanicError) -> None:
+        """Do without the trial, or the offset, that failed; raise its error where there is nothing else."""
+        self.worker = None
+        stage, _ = self.rungs[0]
+        if self.rival:
+            self.worker, self.rival, self.offset = self.rival, None, OFFSETS
+            return
+        hopeless = isinstance(error, CurveError) and error.needed is None and not self.shapes
+        if self.method != "both" or stage in ("climb", "polish") or hopeless:
+            raise error
+        self.failed.append(str(error))
+        if not self.shapes and len(self.failed) >= min(AGREEING, self.trials):
+            raise error
+        self._next_trial()
+
+    def _next_trial(self) -> None:
+        """Plan another trial, or, where there were enough, the climb from the best shape."""
+        if self._enough():
+            self.curve, self.rungs = cast("Curve", self.shape), self._climb_to_target()
+        else:
+            self.curve, self.rungs = self.start, [("collapse", 0)]
+
+    def _trials_done(self) -> int:
+        return len(self.shapes) + len(self.failed)
 
     def _trial(self, length: float) -> list[Rung]:
         """Plan the rest of a trial for a rope of this length."""
         # Edges of other lengths find other shapes; multiples of the golden ratio spread them evenly.
-        least, most = (0.92, 1.1) if _is_hot(len(self.shapes)) else (0.6, 0.9)
-        edge = least + (most - least) * ((0.5 + len(self.shapes) // 2 * (math.sqrt(5) - 1) / 2) % 1)
+        trial = self._trials_done()
+        least, most = (0.92, 1.1) if _is_hot(trial) else (0.6, 0.9)
+        edge = least + (most - least) * ((0.5 + trial // 2 * (math.sqrt(5) - 1) / 2) % 1)
         n = _coarsest(self.targets[0], length)
         return [("anneal", min(n, max(int(length / edge), 3 * len(self.curve)))), ("trial", n)]
 
@@ -409,8 +439,10 @@ class Run:
 
     def _enough(self) -> bool:
         """Tell whether another trial is not worth it."""
-        agree = max(self.shapes) < (1 + SAME_SHAPE) * min(self.shapes)
-        return len(self.shapes) >= (AGREEING if agree else self.trials) or len(self.shapes) >= self.trials
+        if self._trials_done() >= self.trials:
+            return True
+        agree = self.shapes and max(self.shapes) < (1 + SAME_SHAPE) * min(self.shapes)
+        return bool(agree) and len(self.shapes) >= AGREEING
 
     def _tight(self, worker: Engine | None) -> Tight:
         assert worker is not None
@@ -420,6 +452,7 @@ class Run:
             status.best,
             status.outcome == "tight",
             list(self.shapes),
+            list(self.failed),
             self.sweeps,
             self.factorisations,
             self.seconds,

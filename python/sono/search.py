@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono import library
-from sono._core import Collapse, CurveError, Measures, Polish, Tightener
+from sono._core import Collapse, Measures, PanicError, Polish, Tightener
 from sono.invariants import Fingerprint, fingerprint
 from sono.pipeline import HOT, SLICE, Curve, as_curve, tighten
 from sono.scramble import scramble
@@ -74,6 +74,10 @@ SAME_EDGES = 0.02
 
 SEED_STRIDE = 10**6
 """Variants of one seed; those of the next begin after them."""
+
+FAILURES = (ValueError, PanicError)
+"""What ends a trial, or the refining of a shape, and nothing else: a `CurveError`, a curve that no scramble
+can be made of, a bug in the core."""
 
 Radii: TypeAlias = NDArray[np.float64]
 Worker = TypeVar("Worker", Collapse, Tightener, Polish)
@@ -169,7 +173,7 @@ def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
         annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
         n = round(annealed.status().best.l_p / TRIAL_EDGE)
         polished = _done(Polish(annealed.best(), n, True, abs(variant)), watch)
-    except ValueError:  # CurveError, or a curve that no scramble can be made of
+    except FAILURES:
         return Shape(variant)
     curve = polished.best()
     if fingerprint(curve) != source.type:
@@ -186,9 +190,12 @@ def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
     return polish and _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
 
 
-def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum:
-    """Polish a minimum on n vertices, doubling the vertices on the way there."""
-    tight = tighten(minimum.curve, n, method="polish", watch=lambda _: watch())
+def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None:
+    """Polish a minimum on n vertices, doubling the vertices on the way there; None if that fails."""
+    try:
+        tight = tighten(minimum.curve, n, method="polish", watch=lambda _: watch())
+    except FAILURES:
+        return None
     assert tight.residual is not None
     return replace(
         minimum,
@@ -208,7 +215,7 @@ def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
     n = sum(map(len, minimum.curve))
     try:
         fine = _done(Polish(minimum.curve, 2 * n, False, 0), watch)
-    except CurveError:
+    except FAILURES:
         return minimum
     polish = _polished(fine.best(), n, watch)
     return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
@@ -275,9 +282,9 @@ class Search:
             self._merge(again or minimum)
         yield
 
-    def confirmed(self, minimum: Minimum, source: Source) -> Minimum | None:
-        """Return a minimum if it is of the knot's type; count it if it is not."""
-        if fingerprint(minimum.curve) == source.type:
+    def confirmed(self, minimum: Minimum | None, source: Source) -> Minimum | None:
+        """Return a minimum, if there is one, of the knot's type; count it if it is of another."""
+        if not minimum or fingerprint(minimum.curve) == source.type:
             return minimum
         self.changed += 1
         return None
@@ -345,7 +352,7 @@ class Search:
             # Other trials may have met the shape while it was refined.
             same = [other for other in self.shapes if _alike(other.radii, shape.radii)]
             self.shapes = [other for other in self.shapes if other not in same]
-            if found and self.confirmed(found, source):
+            if found := self.confirmed(found, source):
                 self._merge(replace(found, hits=sum(shape.hits for shape in same)))
 
     def _merge(self, found: Minimum) -> None:
@@ -377,7 +384,7 @@ def _polished(curve: Curve, n: int, watch: Watch) -> Polish | None:
     """Polish a rope on n vertices from a few offsets along it, and return the shortest, if there is any."""
     found = []
     for offset in range(OFFSETS):
-        with suppress(CurveError):
+        with suppress(*FAILURES):
             found.append(_done(Polish(curve, n, False, offset), watch))
     return min(found, key=lambda polish: (not _is_tight(polish), _length(polish.status().best)), default=None)
 
