@@ -68,7 +68,7 @@ impl Collapse {
     /// Works for about `budget`, unless done before.
     ///
     /// # Errors
-    /// [`Error::TooComplex`], [`Error::TooThin`] where the curve cannot be loosened.
+    /// [`Error::TooEntangled`], [`Error::TooThin`] where the curve cannot be loosened.
     pub fn advance(&mut self, budget: Duration) -> Result<Status> {
         let start = Instant::now();
         let left = || budget.saturating_sub(start.elapsed());
@@ -144,11 +144,11 @@ impl Collapse {
 
 /// Whether a jammed rope is many times as long as its knot can need.
 fn is_far_too_long(rope: &Curve) -> bool {
-    let most =
-        |crossings: usize| A_CROSSING * crossings as f64 + A_COMPONENT * rope.components() as f64;
-    let crossings = |rope| simplified(rope).map(|simple| fewest_crossings(&simple));
-    let length = measure(rope).l_p;
-    length > most(0) && crossings(rope).is_ok_and(|crossings| length > most(crossings))
+    let components = rope.components() as f64;
+    let enough = ((measure(rope).l_p - A_COMPONENT * components) / A_CROSSING).floor();
+    // So many crossings would ask for a rope of this length.
+    let fewer = |simple| fewest_crossings(&simple, enough as usize) as f64 <= enough;
+    enough >= 0. && simplified(rope).is_ok_and(fewer)
 }
 
 #[cfg(test)]

@@ -53,21 +53,19 @@ pub enum Error {
     },
     /// The rope around the curve is too thin for its length to be filled with beads.
     #[error(
-        "the curve comes so close to itself that a rope around it needs over {limit} beads; move its \
-         strands apart, or let the method both do it"
+        "the curve comes so close to itself that a rope around it needs over {limit} beads; \
+         move its strands apart"
     )]
     TooThin {
         /// The largest number of beads that is tried.
         limit: usize,
     },
-    /// What is left when all vertices that can go have been removed is still beyond all means.
+    /// A curve with too many crossings, however simple the polygon is made.
     #[error(
-        "the curve is so entangled that {sticks} vertices are left of its simplest polygon; \
-         {limit} is the most that can be loosened"
+        "the curve is so entangled that over {limit} crossings are left when it has been simplified; \
+         so many cannot be loosened"
     )]
-    TooComplex {
-        /// Vertices of the simplified polygon.
-        sticks: usize,
+    TooEntangled {
         /// The most that is tried.
         limit: usize,
     },

@@ -32,6 +32,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::curve::{Curve, turning_angle};
 use crate::embedded::check_embedded;
 use crate::error::{Error, Result};
+use crate::projection::fewest_crossings;
 use crate::segments::closest;
 use crate::sticks::Sticks;
 
@@ -51,8 +52,8 @@ const REACH: f64 = 8.;
 const ALONG: [f64; 4] = [2., 0.8, 0.32, 0.13];
 const RANDOM: [f64; 2] = [0.2, 0.08];
 const INWARDS: [f64; 2] = [0.9, 0.5];
-/// Sticks that are left at most of what can be loosened.
-const MOST_STICKS: usize = 5000;
+/// Crossings that are left at most of what can be loosened.
+const MOST_CROSSINGS: usize = 20_000;
 
 /// The same curve with as few vertices as triangle moves leave; its strands may all but touch.
 ///
@@ -77,7 +78,7 @@ pub fn simplified(curve: &Curve) -> Result<Curve> {
 /// The curve as a [`Loosening`] leaves it.
 ///
 /// # Errors
-/// [`Error::SelfCrossing`], [`Error::TooComplex`].
+/// [`Error::SelfCrossing`], [`Error::TooEntangled`].
 pub fn loosened(curve: &Curve) -> Result<Curve> {
     let mut loosening = Loosening::new(curve)?;
     while !loosening.advance(Duration::MAX)? {}
@@ -129,7 +130,7 @@ impl Loosening {
     /// Works for about `budget`, unless done before; returns whether it is.
     ///
     /// # Errors
-    /// [`Error::TooComplex`].
+    /// [`Error::TooEntangled`].
     pub fn advance(&mut self, budget: Duration) -> Result<bool> {
         let start = Instant::now();
         while !self.is_done() && start.elapsed() < budget {
@@ -184,9 +185,11 @@ impl Loosening {
 
     /// Goes on as long as it is worth it, then with halved edges.
     fn plan(&mut self) -> Result<Work> {
-        let sticks = self.sticks.n();
-        if sticks > MOST_STICKS {
-            return Err(Error::TooComplex { sticks, limit: MOST_STICKS });
+        if self.attempts + self.halvings == 0 {
+            let limit = MOST_CROSSINGS;
+            if fewest_crossings(&self.sticks.curve(), limit) > limit {
+                return Err(Error::TooEntangled { limit });
+            }
         }
         let now = self.goal(self.sum, self.sticks.length());
         let settled = self.attempts > 1 && now > (1. - SETTLED) * self.before;

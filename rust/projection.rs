@@ -17,8 +17,9 @@ pub struct Crossing {
     pub right: bool,
 }
 
-/// The crossings of a polygon no two vertices of which are seen in one place, as after [`crate::simplified`].
-pub fn crossings(curve: &Curve) -> Vec<Crossing> {
+/// The crossings of a polygon no two vertices of which are seen in one place, as after
+/// [`crate::simplified`]; of more than `most`, only some.
+pub fn crossings(curve: &Curve, most: usize) -> Vec<Crossing> {
     let v = curve.vertices();
     let edges: Vec<_> = (0..curve.n()).map(|i| (i, curve.next(i))).collect();
     let mut order: Vec<_> = (0..edges.len()).collect();
@@ -27,6 +28,9 @@ pub fn crossings(curve: &Curve) -> Vec<Crossing> {
     order.sort_unstable_by(|&i, &j| low(i).total_cmp(&low(j)));
     let mut found = vec![];
     for (k, &i) in order.iter().enumerate() {
+        if found.len() > most {
+            break;
+        }
         for &j in order[k + 1..].iter().take_while(|&&j| low(j) <= high(i)) {
             let (i, j) = (i.min(j), i.max(j));
             let [(a, b), (c, d)] = [edges[i], edges[j]];
@@ -61,14 +65,15 @@ fn area(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     orient2d(a, b, c)
 }
 
-/// The number of crossings seen along that axis from which there are fewest.
-pub fn fewest_crossings(curve: &Curve) -> usize {
+/// The number of crossings seen along that axis from which there are fewest; more than `most` are
+/// not counted.
+pub fn fewest_crossings(curve: &Curve, most: usize) -> usize {
     let turned = |turns: usize| {
         let mut curve = curve.clone();
         curve.vertices_mut().iter_mut().for_each(|v| {
             *v = DVec3::from_array(std::array::from_fn(|axis| v[(axis + turns) % 3]));
         });
-        crossings(&curve).len()
+        crossings(&curve, most).len()
     };
     (0..3).map(turned).min().unwrap_or(0)
 }
@@ -85,10 +90,10 @@ mod tests {
     fn a_kink_has_the_crossing_that_is_seen() {
         // The first edge runs along x below the third, which crosses it to the right.
         let kink = curve(&[[-1., 0., 0.], [1., 0., 0.], [0., 1., 1.], [0., -1., 1.]]);
-        let [crossing] = crossings(&kink)[..] else { panic!("not one crossing") };
+        let [crossing] = crossings(&kink, 9)[..] else { panic!("not one crossing") };
         assert_eq!((crossing.over, crossing.under, crossing.right), (2.5, 0.5, true));
         let above = curve(&[[-1., 0., 2.], [1., 0., 2.], [0., 1., 1.], [0., -1., 1.]]);
-        let [crossing] = crossings(&above)[..] else { panic!("not one crossing") };
+        let [crossing] = crossings(&above, 9)[..] else { panic!("not one crossing") };
         assert_eq!((crossing.over, crossing.under, crossing.right), (0.5, 2.5, false));
     }
 
@@ -96,13 +101,13 @@ mod tests {
     fn strands_one_bit_apart_are_told_apart() {
         for (z, over) in [(f64::EPSILON, 2.5), (-f64::EPSILON, 0.5)] {
             let near = curve(&[[-1., 0., 1.], [1., 0., 1.], [0., 1., 1. + z], [0., -1., 1. + z]]);
-            assert_eq!(crossings(&near)[0].over, over);
+            assert_eq!(crossings(&near, 9)[0].over, over);
         }
     }
 
     #[test]
     fn the_view_with_fewest_crossings_counts() {
         let kink = curve(&[[-1., 0., 0.], [1., 0., 0.], [0., 1., 1.], [0.1, -1., 1.2]]);
-        assert_eq!((crossings(&kink).len(), fewest_crossings(&kink)), (1, 0));
+        assert_eq!((crossings(&kink, 9).len(), fewest_crossings(&kink, 9)), (1, 0));
     }
 }

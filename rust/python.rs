@@ -55,7 +55,7 @@ fn to_python(error: Error) -> PyErr {
         }
         Error::Empty
         | Error::TooThin { .. }
-        | Error::TooComplex { .. }
+        | Error::TooEntangled { .. }
         | Error::TooCoarse { .. } => vec![],
     };
     let raised = CurveError::new_err(error.to_string());
@@ -179,11 +179,16 @@ fn simplify<'py>(
 type CrossingArrays<'py> =
     (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
 
-/// The crossings seen from above: places of the upper and lower strands, whether right-handed.
+/// The crossings seen from above: places of the upper and lower strands, whether right-handed. Of
+/// more than `most`, only some.
 #[pyfunction]
-fn crossings<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<CrossingArrays<'py>> {
+fn crossings<'py>(
+    py: Python<'py>,
+    components: Arrays<'py>,
+    most: usize,
+) -> PyResult<CrossingArrays<'py>> {
     let curve = curve(components)?;
-    let found = released(py, || crate::projection::crossings(&curve))?;
+    let found = released(py, || crate::projection::crossings(&curve, most))?;
     Ok((
         PyArray1::from_iter(py, found.iter().map(|c| c.over)),
         PyArray1::from_iter(py, found.iter().map(|c| c.under)),

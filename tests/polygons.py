@@ -55,7 +55,12 @@ def meander(steps: int, seed: int) -> Vertices:
 def lattice(steps: int, seed: int) -> Vertices:
     """An unknot in the cubic lattice, grown by pushing random edges aside."""
     random = np.random.default_rng(seed)
-    onward: dict[Any, Any] = {(0, 0, 0): (1, 0, 0), (1, 0, 0): (1, 1, 0), (1, 1, 0): (0, 1, 0), (0, 1, 0): (0, 0, 0)}
+    onward: dict[Any, Any] = {
+        (0, 0, 0): (1, 0, 0),
+        (1, 0, 0): (1, 1, 0),
+        (1, 1, 0): (0, 1, 0),
+        (0, 1, 0): (0, 0, 0),
+    }
     points = list(onward)
     while len(points) < steps:
         a = points[random.integers(len(points))]

@@ -3,13 +3,15 @@
 import json
 import math
 from collections.abc import Callable
-from typing import Any
+from itertools import count
+from typing import Any, get_args
 
 import numpy as np
 import pytest
+from polygons import entangled
 
 import sono
-from sono import pipeline
+from sono import invariants, library, pipeline, tighten
 from sono._core import PanicError
 from sono.pipeline import Method, Progress, Run, Stopped, as_curve, check_settings, default_settings
 
@@ -263,3 +265,48 @@ def test_where_no_trial_succeeds_the_error_is_told() -> None:
     with pytest.raises(sono.CurveError, match="crosses itself") as caught:
         sono.tighten(crossing, 60)
     assert caught.value.needed is None
+
+
+def other_knots(monkeypatch: pytest.MonkeyPatch, changed: set[int]) -> None:
+    """Let the ropes that come in these places seem to be of another type."""
+    place = count()
+
+    def seen(curve: invariants.Curve) -> invariants.Fingerprint:
+        found = invariants.fingerprint(curve)
+        return ((7,), *found[1:]) if next(place) in changed else found
+
+    monkeypatch.setattr(pipeline, "fingerprint", seen)
+
+
+def test_a_trial_that_changes_the_type_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+    other_knots(monkeypatch, {2})  # after the curve itself and the first collapse: the first anneal
+    tight = tighten(library.start("3_1"), 60, trials=3)
+    assert tight.converged
+    assert len(tight.shapes) == 2
+    (why,) = tight.failed
+    assert "came out as another knot" in why
+
+
+@pytest.mark.parametrize("method", get_args(Method))
+def test_another_knot_is_never_delivered(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
+    other_knots(monkeypatch, set(range(1, 1000)))
+    with pytest.raises(pipeline.KnotTypeError, match="came out as another knot"):
+        tighten(library.start("3_1"), 60, method=method, settings={"anneal_sweeps": 1000})
+
+
+def test_a_knot_lost_at_the_last_polish_is_not_delivered(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = Run(library.start("3_1"), [60], {}, trials=1)
+    other_knots(monkeypatch, {4})  # the curve, collapse, anneal, trial, polish
+    with pytest.raises(pipeline.KnotTypeError, match="the polish at n = 60"):
+        run.tighten()
+
+
+def test_a_thin_curve_is_loosened_once_for_all_trials() -> None:
+    polygon = entangled(16, 3)
+    run = Run([polygon], [120], {}, trials=3)
+    stages = []
+    tight = run.tighten(lambda progress: stages.append((progress.trial, progress.status)))
+    assert tight.loosened
+    assert len(tight.shapes) == 3
+    loosening = {trial for trial, status in stages if getattr(status, "stage", None) == "loosen"}
+    assert loosening == {1}

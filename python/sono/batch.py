@@ -19,7 +19,18 @@ from typing import Any
 from sono import contacts, formats, sources
 from sono._core import CurveError, Measures, PanicError
 from sono.formats import FormatError, VertexFile, is_stream
-from sono.pipeline import TRIALS, Method, Progress, Run, Stopped, Tight, default_settings, forces, measure
+from sono.pipeline import (
+    TRIALS,
+    KnotTypeError,
+    Method,
+    Progress,
+    Run,
+    Stopped,
+    Tight,
+    default_settings,
+    forces,
+    measure,
+)
 from sono.tables import Row
 from sono.workers import Workers
 
@@ -273,6 +284,8 @@ class _Task:
                 yield self.out_of_reach(n, str(trouble))
             except PanicError as error:
                 yield self.out_of_reach(n, f"{self.job.name}: n = {n}: {_as_bug(error)}")
+            except KnotTypeError as error:
+                yield self.out_of_reach(n, f"{self.job.name}: n = {n}: {error}")
             else:
                 if n in self.todo:
                     reached = SETTLED if self.job.method == "sono" else TIGHT
@@ -309,16 +322,20 @@ class _Task:
         return Result(row, f"{self.job.name}: {why}; {place}{self.way_on()}")
 
     def tried(self, tight: Tight) -> str | None:
-        """Say once which shapes the trials found, and which of them failed."""
-        if self.told or len(tight.shapes) + len(tight.failed) < 2:
+        """Say once how the curve was made ready, which shapes the trials found, and which of them failed."""
+        notes = []
+        if tight.loosened:
+            notes += ["as it is the curve holds only a thin rope; it was loosened first, by isotopic moves"]
+        if len(tight.shapes) + len(tight.failed) > 1:
+            found = Counter(f"{length:.4f}" for length in sorted(tight.shapes))
+            hits = ", ".join(f"{length} ({times} of them)" for length, times in found.items())
+            trials = f"{len(tight.shapes)} trials at n = {sum(map(len, self.run.shape or []))}"
+            lost = "".join(f"; {times} failed: {why}" for why, times in Counter(tight.failed).items())
+            notes += [f"{trials} ended at L_a {hits}; the shortest was taken{lost}"]
+        if self.told or not notes:
             return None
         self.told = True
-        found = Counter(f"{length:.4f}" for length in sorted(tight.shapes))
-        hits = ", ".join(f"{length} ({times} of them)" for length, times in found.items())
-        n = sum(map(len, self.run.shape or []))
-        trials = f"{len(tight.shapes)} trials at n = {n}"
-        lost = "".join(f"; {times} failed: {why}" for why, times in Counter(tight.failed).items())
-        return f"{self.job.name}: {trials} ended at L_a {hits}; the shortest was taken{lost}"
+        return f"{self.job.name}: {'; '.join(notes)}"
 
     def deliver(self, n: int, tight: Tight, status: str) -> tuple[Row, str | None]:
         """Write what was asked for at n."""

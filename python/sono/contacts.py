@@ -1,7 +1,8 @@
 """The forces in a tight rope as a table: which beads press against each other, and how hard."""
 
 from sono import formats
-from sono.pipeline import Curve, Forces
+from sono.invariants import Curve
+from sono.pipeline import Forces
 
 HEADER = """\
 # Forces in a rope of radius 1, in units of its mean tension; beads count from 0 through all components.

@@ -7,6 +7,7 @@ sharper and needs the extra sono[identify]. The single invariants take a project
 
 import cmath
 import math
+import sys
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -56,7 +57,7 @@ def fingerprint(curve: Curve) -> Fingerprint:
     orders modulo `PRIME`, is known up to a factor of plus or minus a power of t, which the power 2 k removes.
     Curves of one type, with their components in one order, have equal fingerprints, however thin they are.
     Few passages of strands leave it as it was, but 66 of the 249 knots to 10 crossings share theirs with
-    others; see `homfly`. Raises `ValueError` for a curve of over `MOST_CROSSINGS` crossings.
+    others; see `homfly`. Raises `TooEntangledError`, and `CurveError` for a curve that crosses itself.
     """
     found = diagram(curve)
     linking = linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()
@@ -90,19 +91,19 @@ def planar_diagram(found: Crossings) -> list[tuple[int, int, int, int]]:
     return [(a, b, c, d) for a, b, c, d in codes]
 
 
-def diagram(curve: Curve) -> Crossings:
-    """Return a projection of `curve` with few crossings. Raises `ValueError` if there are too many.
+class TooEntangledError(ValueError):
+    """A curve whose projection has so many crossings that its invariants would take ages."""
 
-    The curve is simplified by exact isotopies, and if it is entangled loosened as well.
-    """
-    for made_simple in (_core.simplify, _core.loosen):
-        simple = made_simple(curve)
-        # Turning the axes is exact.
-        views = (_seen([np.roll(component, turn, axis=1) for component in simple]) for turn in range(3))
-        found = min(views, key=lambda found: len(found.sign))
-        if len(found.sign) <= MOST_CROSSINGS:
-            return found
-    raise ValueError(f"the curve is too entangled: of its crossings {len(found.sign)} are left")
+
+def diagram(curve: Curve) -> Crossings:
+    """Return a projection of `curve`, simplified by exact isotopies. Raises `TooEntangledError`."""
+    simple = _core.simplify(curve)
+    # Turning the axes is exact.
+    turned = ([np.roll(component, turn, axis=1) for component in simple] for turn in range(3))
+    found = min((_seen(curve, MOST_CROSSINGS) for curve in turned), key=lambda found: len(found.sign))
+    if len(found.sign) > MOST_CROSSINGS:
+        raise TooEntangledError(f"the curve has over {MOST_CROSSINGS} crossings: its type cannot be told")
+    return found
 
 
 def linking_matrix(found: Crossings) -> Ints:
@@ -232,8 +233,8 @@ def crossings(curve: Curve, direction: Floats | None = None) -> Crossings:
     return _seen([component @ turn for component in curve])
 
 
-def _seen(curve: Curve) -> Crossings:
-    over, under, right = _core.crossings(curve)
+def _seen(curve: Curve, most: int = sys.maxsize) -> Crossings:
+    over, under, right = _core.crossings(curve, most)
     return Crossings(over, under, np.where(right, 1, -1), _bounds(curve))
 
 

@@ -11,6 +11,7 @@ import json
 import math
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from operator import index
 from typing import Any, Literal, Self, cast, get_args
@@ -20,8 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
 from sono._core import Collapse, CurveError, Measures, PanicError, Polish, PolishStatus, Status, Tightener
+from sono.invariants import Curve, Fingerprint, TooEntangledError, fingerprint
 
-Curve = list[NDArray[np.float64]]
 Method = Literal["both", "sono", "polish"]
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 Rung = tuple[Stage, int]
@@ -56,6 +57,10 @@ HOT = 0.5
 
 class Stopped(Exception):  # noqa: N818 - no error, a request that was followed
     """The run was stopped before its end; what it has is in `Run.best`."""
+
+
+class KnotTypeError(ValueError):
+    """A rope came out as another knot than the curve that was given, and is not delivered: a bug."""
 
 
 class _TimeIsUp(Stopped):
@@ -127,7 +132,8 @@ def tighten(
     "sono" and "polish" do without the other. After `time_limit` seconds the best state so far is returned,
     with `converged` False. `settings` replaces some of `default_settings()`, which are SONO's. `watch` is
     called about ten times a second; what it raises ends the run and passes through. Raises `CurveError` for a
-    curve that cannot be tightened (with so few vertices), `ValueError` for a wrong n, method or setting.
+    curve that cannot be tightened (with so few vertices), `ValueError` for a wrong n, method or setting. A
+    rope of another knot type than the curve is never returned: `KnotTypeError`.
     """
     settings = {**(settings or {}), "seed": index(seed)}
     run = Run(as_curve(vertices), [index(n)], settings, method, index(trials))
@@ -168,8 +174,9 @@ class Tight:
     `curve` holds one (n_i, 3) array for each component, scaled to R_s = 1; `measures` is what it measures.
     `converged` tells whether the last engine reached its end: the polish a residual below 1e-8 at mu = 1e-11,
     SONO the dispersion and overlaps that the settings ask for. `shapes` has the L_a of each trial's shape,
-    all at the same coarse n, and `failed` says why other trials came to nothing. `sweeps`, `factorisations`
-    and `seconds` count from the start of the run.
+    all at the same coarse n, and `failed` says why other trials came to nothing. `loosened` tells that the
+    curve, as it was given, held only a thin rope, and was first loosened by isotopic moves. `sweeps`,
+    `factorisations` and `seconds` count from the start of the run.
 
     Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
     those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
@@ -182,6 +189,7 @@ class Tight:
     converged: bool
     shapes: list[float]
     failed: list[str]
+    loosened: bool
     sweeps: int
     factorisations: int
     seconds: float
@@ -218,7 +226,9 @@ class Run:
     settings: dict[str, Any]
     method: Method = "both"
     trials: int = TRIALS
+    type: Fingerprint | None = None
     start: Curve = field(default_factory=list)
+    loosened: bool = False
     rungs: list[Rung] = field(default_factory=list)
     shape: Curve | None = None
     shapes: list[float] = field(default_factory=list)
@@ -253,12 +263,16 @@ class Run:
         """Tighten at the first target; `watch` is called between slices and rungs and may raise `Stopped`.
 
         Called once more it gives the same again. A trial that fails is only one trial less. Raises
-        `CurveError` for a curve that cannot be tightened, or not with so few vertices.
+        `CurveError` for a curve that cannot be tightened, or not with so few vertices, and `KnotTypeError`.
         """
+        if self.type is None:
+            with suppress(TooEntangledError):  # the collapsed rope is less so, as a rule
+                self.type = fingerprint(self.curve)
         while True:
             try:
                 self._climb(watch)
-            except (CurveError, PanicError) as error:
+                self._check_type()
+            except _FAILURES as error:
                 self._fail(error)
                 continue
             if self._is_last():
@@ -314,7 +328,8 @@ class Run:
         curves = {name: state[name] and as_curve(state[name]) for name in ("curve", "start", "shape")}
         rungs = [(stage, n) for stage, n in state["rungs"]]
         rival = state["rival"] and Polish.restore(state["rival"])
-        run = cls(**state | curves | {"rungs": rungs, "worker": None, "rival": rival})
+        type = state["type"] and tuple(map(tuple, state["type"]))
+        run = cls(**state | curves | {"type": type, "rungs": rungs, "worker": None, "rival": rival})
         if state["worker"]:
             engine, worker = state["worker"]
             run.worker = _ENGINES[engine].restore(worker)
@@ -338,6 +353,15 @@ class Run:
             if status.outcome != "running":
                 return
             look(status)
+
+    def _check_type(self) -> None:
+        """Compare what a rung has ended in with the curve that was given."""
+        assert self.worker is not None
+        found = fingerprint(self.worker.best())
+        self.type = self.type or found
+        if found != self.type:
+            stage, n = self.rungs[0]
+            raise KnotTypeError(f"the {stage} at n = {n} came out as another knot; please report this curve")
 
     def _is_last(self) -> bool:
         """Tell whether nothing but the worker is between here and the first target."""
@@ -384,6 +408,8 @@ class Run:
             return
         tight = self._tight(self.worker)
         self.curve, self.sweeps, self.factorisations = tight.curve, tight.sweeps, tight.factorisations
+        if isinstance(self.worker, Collapse) and (loosened := self.worker.loosened()):
+            self.start, self.loosened = loosened, True  # once for all trials
         self.worker = None
         stage, _ = self.rungs.pop(0)
         if stage == "collapse":
@@ -396,7 +422,7 @@ class Run:
             self._compare(tight.measures)
             self._next_trial()
 
-    def _fail(self, error: CurveError | PanicError) -> None:
+    def _fail(self, error: CurveError | PanicError | KnotTypeError) -> None:
         """Do without the trial, or the offset, that failed; raise its error where there is nothing else."""
         self.worker = None
         stage, _ = self.rungs[0]
@@ -453,6 +479,7 @@ class Run:
             status.outcome == "tight",
             list(self.shapes),
             list(self.failed),
+            self.loosened,
             self.sweeps,
             self.factorisations,
             self.seconds,
@@ -483,6 +510,9 @@ class Run:
         *levels, n = _doubled(sum(map(len, self.curve)), self.targets[0]) or self.targets[:1]
         return [*((between, level) for level in levels), (last, n)]
 
+
+_FAILURES = (CurveError, PanicError, KnotTypeError)
+"""What ends a trial, and not always the run."""
 
 _ENGINES: dict[str, type[Engine]] = {engine.__name__: engine for engine in (Collapse, Tightener, Polish)}
 

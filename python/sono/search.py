@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from sono import library
 from sono._core import Collapse, Measures, PanicError, Polish, Tightener
-from sono.invariants import Fingerprint, fingerprint
-from sono.pipeline import HOT, SLICE, Curve, as_curve, tighten
+from sono.invariants import Curve, Fingerprint, fingerprint
+from sono.pipeline import HOT, SLICE, as_curve, tighten
 from sono.scramble import scramble
 
 TRIAL_EDGE = 0.45
