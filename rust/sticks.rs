@@ -287,18 +287,16 @@ impl Tree {
 
     /// Whether `test` holds for a leaf whose box meets `span`.
     fn any(&self, span: &Span, mut test: impl FnMut(usize) -> bool) -> bool {
-        let mut todo = vec![1];
-        while let Some(k) = todo.pop() {
-            if !self.nodes[k].meets(span) {
-                continue;
+        self.any_below(1, span, &mut test)
+    }
+
+    fn any_below(&self, k: usize, span: &Span, test: &mut impl FnMut(usize) -> bool) -> bool {
+        self.nodes[k].meets(span)
+            && if k < self.first_leaf {
+                self.any_below(2 * k, span, test) || self.any_below(2 * k + 1, span, test)
+            } else {
+                test(k - self.first_leaf)
             }
-            if k < self.first_leaf {
-                todo.extend([2 * k + 1, 2 * k]);
-            } else if test(k - self.first_leaf) {
-                return true;
-            }
-        }
-        false
     }
 }
 
