@@ -44,14 +44,16 @@ pub struct Collapse {
 }
 
 impl Collapse {
-    /// Collapses any embedded curve of any scale; the number of vertices is chosen by itself.
+    /// Collapses any embedded curve of any scale; the number of vertices is chosen by itself. A curve
+    /// that was loosened before is not loosened again.
     ///
     /// # Errors
-    /// [`Error::Setting`], [`Error::SelfCrossing`].
-    pub fn new(curve: &Curve, settings: Settings) -> Result<Self> {
-        let direct = match Tightener::collapse(curve, AS_IT_IS, settings) {
+    /// [`Error::Setting`], [`Error::SelfCrossing`]; [`Error::TooThin`] for a loosened curve.
+    pub fn new(curve: &Curve, loosened: bool, settings: Settings) -> Result<Self> {
+        let most = if loosened { LOOSENED } else { AS_IT_IS };
+        let direct = match Tightener::collapse(curve, most, settings) {
             Ok(direct) => Some(direct),
-            Err(Error::TooThin { .. }) => None,
+            Err(Error::TooThin { .. }) if !loosened => None,
             Err(error) => return Err(error),
         };
         Ok(Self {
@@ -174,7 +176,7 @@ mod tests {
     fn a_rope_that_jams_far_too_long_is_loosened() {
         let settings = Settings { anneal_sweeps: 1, ..Default::default() };
         let jammed = Tightener::anneal(&ellipse(4.), 200, settings).unwrap();
-        let mut collapse = Collapse::new(&ellipse(4.), settings).unwrap();
+        let mut collapse = Collapse::new(&ellipse(4.), false, settings).unwrap();
         assert!(!collapse.thin);
         collapse.direct = Some(jammed);
         let mut stages = vec![];

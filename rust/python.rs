@@ -261,10 +261,17 @@ struct Collapse(crate::Collapse);
 #[pymethods]
 impl Collapse {
     #[new]
-    fn new(py: Python<'_>, components: Arrays<'_>, settings: &str) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        components: Arrays<'_>,
+        loosened: bool,
+        settings: &str,
+    ) -> PyResult<Self> {
         let curve = curve(components)?;
         let settings = settings_from_json(settings)?;
-        released(py, || crate::Collapse::new(&curve, settings))?.map(Self).map_err(to_python)
+        released(py, || crate::Collapse::new(&curve, loosened, settings))?
+            .map(Self)
+            .map_err(to_python)
     }
 
     fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {

@@ -25,7 +25,7 @@ ROOTS = [np.exp(2j * np.pi / k) for k in ORDERS]
 
 
 def collapsed(vertices: Floats) -> Collapse:
-    collapse = Collapse([vertices], "{}")
+    collapse = Collapse([vertices], False, "{}")
     while collapse.advance(0.1).outcome == "running":
         pass
     return collapse
@@ -80,7 +80,7 @@ def test_a_thick_curve_is_collapsed_as_it_is() -> None:
 def test_links_keep_their_components_apart() -> None:
     small, large = entangled(12, 1), 1e5 * entangled(12, 2)
     for link in ([small, large + 3e6], [small, large + small.mean(axis=0)], [large, small + 1, 2 - small]):
-        collapse = Collapse(link, "{}")
+        collapse = Collapse(link, False, "{}")
         while collapse.advance(0.1).outcome == "running":
             pass
         assert fingerprint(collapse.best()) == fingerprint(link)
@@ -88,7 +88,7 @@ def test_links_keep_their_components_apart() -> None:
 
 def test_a_saved_collapse_goes_on_as_if_it_had_never_stopped() -> None:
     def through(curve: Curve, saved: set[int]) -> Curve:
-        collapse, slices = Collapse(curve, "{}"), 0
+        collapse, slices = Collapse(curve, False, "{}"), 0
         while collapse.advance(1e-3).outcome == "running":
             slices += 1
             if slices in saved:

@@ -41,7 +41,9 @@ TRIALS = 8
 """Trials of a run, unless the first few agree."""
 
 AGREEING = 4
-"""A run whose first trials, so many, end in the same shape makes no more."""
+LONG = 150
+"""A run whose first trials, so many, end in the same shape makes no more; nor does one of a rope so long, in
+radii: its trials take seconds, each ends in another shape, and a search goes further."""
 
 SAME_SHAPE = 1e-5
 """Relative difference in L_a up to which two shapes count as the same."""
@@ -393,7 +395,7 @@ class Run:
         if self.method == "both":
             settings |= _anneal_of(trial, default_settings() | self.settings)
         if stage == "collapse":
-            return Collapse(self.curve, json.dumps(settings))
+            return Collapse(self.curve, self.loosened, json.dumps(settings))
         try:
             return Tightener(self.curve, stage, n, json.dumps(settings))
         except CurveError:
@@ -429,7 +431,10 @@ class Run:
         if self.rival:
             self.worker, self.rival, self.offset = self.rival, None, OFFSETS
             return
-        hopeless = isinstance(error, CurveError) and error.needed is None and not self.shapes
+        few = self.targets[0]
+        hopeless = (
+            isinstance(error, CurveError) and not self.shapes and (error.needed or math.inf) > 1.3 * few
+        )
         if self.method != "both" or stage in ("climb", "polish") or hopeless:
             raise error
         self.failed.append(str(error))
@@ -468,7 +473,8 @@ class Run:
         if self._trials_done() >= self.trials:
             return True
         agree = self.shapes and max(self.shapes) < (1 + SAME_SHAPE) * min(self.shapes)
-        return bool(agree) and len(self.shapes) >= AGREEING
+        long = self.shapes and min(self.shapes) > LONG
+        return bool(agree or long) and len(self.shapes) >= AGREEING
 
     def _tight(self, worker: Engine | None) -> Tight:
         assert worker is not None

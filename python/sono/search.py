@@ -124,7 +124,7 @@ class Source:
             return self.curve
         if self.name:
             return library.start(self.name, variant)
-        return scramble(_done(Collapse(self.curve, "{}"), watch).best(), variant)
+        return scramble(_done(Collapse(self.curve, False, "{}"), watch).best(), variant)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +163,7 @@ class Minimum:
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
     try:
-        collapsed = _done(Collapse(source.start(variant, watch), "{}"), watch)
+        collapsed = _done(Collapse(source.start(variant, watch), False, "{}"), watch)
         edge = _spread(*ANNEAL_EDGES, variant)
         n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
         if n > MOST_BEADS:

@@ -51,7 +51,8 @@ def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int
     type=click.IntRange(1),
     default=8,
     show_default=True,
-    help="Shapes to find with the method both, unless the first 4 agree; the shortest is polished.",
+    help="Shapes to find with the method both; the shortest is polished. The first 4 will do where they "
+    "agree, or are longer than 150.",
 )
 @click.option(
     "-o",
