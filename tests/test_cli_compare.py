@@ -66,6 +66,25 @@ def test_no_table(folder: Path, sono: Sono) -> None:
     assert "3_1.txt:1: has no column knot" in result.stderr
 
 
+def test_a_table_that_is_not_there_does_not_stop_the_others(folder: Path, sono: Sono) -> None:
+    Path("mine.tsv").write_text(TABLE)
+    alone = sono("compare", "mine.tsv")
+    result = sono("compare", "nowhere.tsv", "mine.tsv")
+    assert (result.exit_code, result.stdout) == (1, alone.stdout)
+    assert "nowhere.tsv: cannot be read" in result.stderr
+
+
+def test_long_cells_are_read(sono: Sono) -> None:
+    knot = 200_000 * "x"
+    result = sono("compare", "-", "--columns", "knot", input=f"knot\tL_a\n{knot}\t71.45\n")
+    assert (result.exit_code, result.stdout) == (0, f"knot\n{knot}\n")
+
+
+def test_columns_go_by_their_heads_too(sono: Sono) -> None:
+    result = sono("compare", "-", "--columns", "L_a-published,l_a", input="knot\tL_a\n8_4\t71.4704\n")
+    assert result.stdout.splitlines()[0] == "L_a-published\tL_a"
+
+
 def test_the_published_table_has_every_knot() -> None:
     table = published.table()
     assert list(table) == [row["knot"] for row in library.table("knots")]

@@ -69,6 +69,10 @@ def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
         (["--braid", "1 1", "--variant", "-2"], "--variant -2: a braid word has no planar diagram"),
         (["Hopf", "--variant", "-2"], "only the knots of the tables have negative variants"),
         (["3_1", "-o", "out.png"], "out.png: .png is no format for vertices"),
+        (["T(999999,3)"], "T(999999,3) would take over 500,000 vertices"),
+        (["chain99999999"], "a chain of 99999999 rings would take over 500,000 vertices"),
+        (["--braid", f"1 {10**20}"], f"a braid of {10**20 + 1} strands, 2 crossings would take over"),
+        (["--braid", 30_000 * "1 "], "a braid of 2 strands, 30000 crossings would take over"),
         (["--list", "3_1"], "--list stands alone"),
         (["--list", "-o", "names.txt"], "--list stands alone"),
     ],
@@ -85,7 +89,9 @@ def test_a_folder_that_is_not_there(sono: Sono) -> None:
     assert result.stderr.startswith("sono: nowhere/out.txt: cannot be written: ")
 
 
-def test_too_large_for_the_memory(sono: Sono) -> None:
-    result = sono("start", "T(2,1000000000000000)")
-    assert result.exit_code == 1
-    assert result.stderr == "sono: this needs more memory than there is\n"
+@pytest.mark.parametrize("name", ["3_1", "10_100", "T(2,4)"])
+def test_variants_are_numbers_of_any_size(sono: Sono, name: str) -> None:
+    result = sono("start", name, "--variant", str(10**20))
+    assert (result.exit_code, result.stderr) == (0, "")
+    if name != "T(2,4)":
+        assert sono("start", name, f"--variant=-{10**20}").exit_code == 0

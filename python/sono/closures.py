@@ -23,6 +23,9 @@ Strokes: TypeAlias = list[tuple[int, int]]
 row ends two strokes too, and a horizontal stroke joins them, which passes over all vertical ones."""
 
 
+MOST_VERTICES = 500_000
+"""Vertices of a curve that is drawn."""
+
 COMMUTE = 0.5
 """How often a random move of an arc presentation exchanges two columns that may be exchanged."""
 
@@ -33,7 +36,7 @@ def torus(p: int, q: int, n: int | None = None) -> Curve:
     The minor radius of the torus is 1. There are g = gcd(p, q) components of n vertices each; by default n
     gives turning angles of 15 to 20 degrees and is a multiple of q/g, so that the polygon has the (q/g)-fold
     symmetry of the curve. pq > 0 is right-handed, pq < 0 its mirror image. Raises ValueError where p or q is
-    zero, or n is less than 3.
+    zero, n is less than 3, or there would be over `MOST_VERTICES`.
     """
     if p == 0 or q == 0:
         raise ValueError(f"T({p},{q}) is no torus knot: p and q must not be zero")
@@ -42,6 +45,7 @@ def torus(p: int, q: int, n: int | None = None) -> Curve:
     n = short * max(3, round(14 * (long + short) / short)) if n is None else n
     if n < 3:
         raise ValueError(f"a closed polygon needs at least 3 vertices, not {n}")
+    _check_size(components * n, f"T({p},{q})")
     # q/p: the strands climb at 45 degrees, as in the tightest rope of two strands. 1: room in the hole.
     major = 1 + short / long
     time = 2 * np.pi * np.arange(n) / n
@@ -62,13 +66,16 @@ def braid(word: Sequence[int]) -> Curve:
     The strands run round the z axis at radii 2 apart. In a crossing two neighbours make half a turn about the
     point between them, so they stay 2 apart; crossings that share no strand share a sector where their order
     allows. There are max |generator| + 1 strands, and a strand without crossings is a circle. Raises
-    ValueError for a generator 0.
+    ValueError for a generator 0, or where there would be over `MOST_VERTICES`.
     """
     if 0 in word:
         raise ValueError("a braid generator must not be 0: they count from +-1")
     strands = max(map(abs, word), default=0) + 1
+    # At least 36 vertices on each strand, and 12 for each crossing on two of them.
+    _check_size(max(36 * strands, 24 * len(word)), f"a braid of {strands} strands, {len(word)} crossings")
     target, lift = _sectors(word, strands)
     sectors = len(target)
+    _check_size(12 * sectors * strands, f"a braid of {strands} strands, {len(word)} crossings")
     # A sector 4 long at the innermost strand keeps the half turns from pinching below radius 1.
     inner = max(2.0, 4 * sectors / (2 * np.pi))
     samples = max(12, math.ceil(36 / sectors))
@@ -121,8 +128,10 @@ def chain(rings: int) -> Curve:
     """Return a simple chain of round rings: 1 is the unknot, 2 the Hopf link, 3 the sum of two Hopf links.
 
     The rings have radius 3. Each is the one before it, moved on by 4 and turned by 90 degrees: every gap is
-    then 2, and neighbours have linking number +1. Raises ValueError for less than one ring.
+    then 2, and neighbours have linking number +1. Raises ValueError for less than one ring, or where there
+    would be over `MOST_VERTICES`.
     """
+    _check_size(48 * rings, f"a chain of {rings} rings")
     if rings < 1:
         raise ValueError(f"a chain has at least one ring, not {rings}")
     time = 2 * np.pi * np.arange(48) / 48
@@ -132,6 +141,12 @@ def chain(rings: int) -> Curve:
         np.column_stack([along + 4 * k, across * math.cos(turn), -across * math.sin(turn)])
         for k, turn in enumerate(turns)
     ]
+
+
+def _check_size(vertices: int, what: str) -> None:
+    """Refuse what would take more memory and time than anyone has, before any is taken."""
+    if vertices > MOST_VERTICES:
+        raise ValueError(f"{what} would take over {MOST_VERTICES:,} vertices; give a smaller one")
 
 
 def grid(strokes: Strokes) -> Curve:

@@ -45,7 +45,7 @@ def lifted(diagram: Diagram, seed: int) -> Curve:
     """
     around = faces(diagram)
     drawings = []
-    for outer in (np.arange(len(around)) + seed) % len(around):
+    for outer in (np.arange(len(around)) + seed % len(around)) % len(around):
         lines, boundary = _triangulated(diagram, around, int(outer))
         points = _drawn(lines, boundary, np.random.default_rng(seed))
         lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)

@@ -248,6 +248,7 @@ def read(source: str) -> list[Row]:
             except ValueError as error:
                 raise FormatError.at(name, number, str(error)) from error
         return rows
+    csv.field_size_limit(2**31 - 1)  # a cell may be longer than csv expects
     lines = csv.reader(io.StringIO(text), delimiter="\t" if "\t" in first else ",")
     keys = {column.header: key for key, column in COLUMNS.items()}
     header = [keys.get(cell, cell) for cell in next(lines, [])]
@@ -255,7 +256,7 @@ def read(source: str) -> list[Row]:
         raise FormatError.at(name, 1, "has no column knot; give a table that sono wrote as tsv, csv or json")
     try:
         return [_of_cells(header, cells) for cells in lines]
-    except ValueError as error:
+    except (ValueError, csv.Error) as error:
         raise FormatError.at(name, lines.line_num, f"does not fit the header: {error}") from error
 
 

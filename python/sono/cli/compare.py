@@ -39,8 +39,18 @@ def command(
     failed = False
     try:
         bounds = published.from_file(published_file) if published_file else published.table()
-        with options.writer(format_, columns) as table:
-            for row in (row for source in sources for row in tables.read(source)):
+    except FormatError as error:
+        options.complain(str(error))
+        sys.exit(1)
+    with options.writer(format_, columns) as table:
+        for source in sources:
+            try:
+                rows = tables.read(source)
+            except FormatError as error:
+                failed = True
+                options.complain(str(error))
+                continue
+            for row in rows:
                 beside = published.beside(row, bounds)
                 table.row(beside)
                 total += beside["published"] is not None
@@ -48,9 +58,6 @@ def command(
                 for key in count:
                     difference = beside.get(key)
                     count[key] += isinstance(difference, float) and difference <= 0
-    except FormatError as error:
-        failed = True
-        options.complain(str(error))
     if not quiet and total:
         l_a, l_c = count.values()
         options.complain(f"of {total} rows L_a is at most the published value in {l_a}, L_c in {l_c}")

@@ -2,6 +2,7 @@
 
 import functools
 import io
+import math
 import os
 import re
 import sys
@@ -121,6 +122,17 @@ def table(default: Sequence[str]) -> Callable[[Function], Function]:
     return decorate
 
 
+def time_limit(help: str) -> Callable[[Function], Function]:
+    """`--time-limit`."""
+    return click.option("--time-limit", type=float, callback=_seconds, metavar="SECONDS", help=help)
+
+
+def _seconds(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 0 < value < math.inf:
+        raise click.BadParameter(f"{value} is no number of seconds above 0")
+    return value
+
+
 def quiet(function: Function) -> Function:
     """`--quiet`."""
     return click.option("-q", "--quiet", is_flag=True, help="No progress and no messages but errors.")(
@@ -129,10 +141,12 @@ def quiet(function: Function) -> Function:
 
 
 def _columns(ctx: click.Context, param: click.Parameter, value: str) -> list[str]:
+    names = {name: column.key for column in tables.COLUMNS.values() for name in (column.header, column.key)}
     keys = [key.strip() for key in value.split(",") if key.strip()]
     for key in keys:
-        if key not in tables.COLUMNS:
+        if key not in names:
             raise click.BadParameter(f"unknown column {key!r}; the columns are: {', '.join(tables.COLUMNS)}")
+    keys = [names[key] for key in keys]
     if not keys:
         raise click.BadParameter("name at least one column")
     return keys

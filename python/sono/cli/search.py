@@ -19,12 +19,7 @@ COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
 @click.option(
     "--trials", type=click.IntRange(1, 10**6), help="Starts to try.  [default: 64, or until the time limit]"
 )
-@click.option(
-    "--time-limit",
-    type=click.FloatRange(0, min_open=True),
-    metavar="SECONDS",
-    help="Begin no further round of trials of a knot after this time.",
-)
+@options.time_limit("Begin no further round of trials of a knot after this time.")
 @click.option(
     "--dl",
     type=click.FloatRange(0.005, 0.5),
