@@ -5,4 +5,4 @@ from pathlib import Path
 
 
 def test_cargo_test() -> None:
-    subprocess.run(["cargo", "test", "--quiet"], cwd=Path(__file__).parent.parent, check=True)
+    subprocess.run(["cargo", "test", "--release", "--quiet"], cwd=Path(__file__).parent.parent, check=True)
