@@ -471,7 +471,7 @@ def free_name(output: str) -> str:
         return output
     path = Path(output)
     names = (path.with_suffix(f".best{number}{path.suffix}") for number in chain([""], count(2)))
-    return os.fspath(next(name for name in names if not name.exists()))
+    return os.fspath(next(name for name in names if not os.path.exists(name)))
 
 
 def _identity(job: Job, file: VertexFile) -> str:

@@ -1,5 +1,6 @@
 """What the commands share: options, the table on standard output, messages on standard error."""
 
+import errno
 import functools
 import io
 import math
@@ -7,13 +8,14 @@ import os
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
 
 from sono import tables
+from sono.locks import Claims, Taken
 from sono.tables import TableWriter
 
 if TYPE_CHECKING:
@@ -183,37 +185,71 @@ def complain(message: str) -> None:
     click.echo(f"sono: {message}", err=True)
 
 
-def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool) -> None:
-    """Before hours are spent: see that these files can be written, and read standard input.
+def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool, more: Iterable[str] = ()) -> None:
+    """Before hours are spent: see that these files can be written, by nobody else, and read standard input.
 
-    If `fresh`, a file that is there is an error.
+    If `fresh`, a file that is there is an error. `more` are names that may be written besides.
     """
-    _refuse_to_overwrite(paths, fresh)
-    for folder in {os.path.dirname(path) for path in paths}:
-        _make_folder(folder or ".")
+    for path, times in Counter(paths).items():
+        if times > 1:
+            raise click.UsageError(f"{path} would be written {times} times; give each knot once, by one name")
+    try:
+        claim(paths)
+    except Taken as taken:
+        why = "another sono is about to write it; let that one end, or name another place with -o"
+        raise click.UsageError(f"{taken.path}: {why}") from taken
+    for path in paths:
+        if fresh and os.path.exists(path):
+            raise click.UsageError(
+                f"{path} exists; --force starts anew, --resume goes on from it, -o names another place"
+            )
+    for path in (*paths, *more):
+        _try(path)
     if "-" in sources:
         # Here, since a signal does not reach a thread that waits for input.
         sys.stdin = io.TextIOWrapper(io.BytesIO(sys.stdin.buffer.read()))
 
 
-def _refuse_to_overwrite(paths: Sequence[str], fresh: bool) -> None:
-    for path, times in Counter(paths).items():
-        if times > 1:
-            raise click.UsageError(f"{path} would be written {times} times; give each knot once, by one name")
-        if fresh and os.path.exists(path):
-            raise click.UsageError(
-                f"{path} exists; --force starts anew, --resume goes on from it, -o names another place"
-            )
+def claim(paths: Sequence[str]) -> None:
+    """Make the folders of files, and keep other processes from writing the files until the command ends.
+
+    Raises `Taken`.
+    """
+    context = click.get_current_context()
+    if "sono.claims" not in context.meta:
+        context.meta["sono.claims"] = context.with_resource(Claims())
+    for folder in dict.fromkeys(os.path.dirname(path) for path in paths):
+        _make_folder(folder or ".")
+        try:
+            context.meta["sono.claims"].take(path for path in paths if os.path.dirname(path) == folder)
+        except OSError as error:  # a file system without locks
+            why = f"nothing can be locked here ({error.strerror})"
+            complain(f"{folder or '.'}: {why}; let no other sono write here meanwhile")
 
 
 def _make_folder(folder: str) -> None:
-    """Make a folder, or make sure that it can be written to, before hours are spent."""
+    """Make a folder, or make sure that it can be written to."""
     try:
         os.makedirs(folder, exist_ok=True)
     except OSError as error:
         raise click.UsageError(f"{folder}: cannot be made: {error.strerror}") from error
     if not os.access(folder, os.W_OK):
         raise click.UsageError(f"{folder}: cannot be written to; -o names another folder")
+
+
+def _try(path: str) -> None:
+    """See that there can be a file of this name, leaving nothing behind."""
+    try:
+        if os.path.isdir(path):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if not os.path.exists(path):
+            there = os.path.realpath(path)
+            os.close(os.open(there, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+            os.unlink(there)
+    except OSError as error:
+        raise click.UsageError(
+            f"{path}: cannot be written: {error.strerror}; -o names another place"
+        ) from error
 
 
 def table_beside(format_: str | None, columns: list[str], taken: bool, quiet: bool) -> TableWriter:

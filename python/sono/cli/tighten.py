@@ -12,6 +12,7 @@ import click
 from sono import tables
 from sono.cli import options
 from sono.cli.runner import Batch
+from sono.locks import Taken
 
 if TYPE_CHECKING:
     from sono.pipeline import Method
@@ -113,7 +114,7 @@ def command(
     Standard input has the NAME stdin, or else stdin-2 and so on.
     """
     # Imported here, since numpy would make --help wait.
-    from sono.batch import Job
+    from sono.batch import Job, free_name
 
     settings = _settings(seed, pairs)
     if force and resume:
@@ -140,7 +141,8 @@ def command(
         )
         for source, name, outputs in _plan(sources, targets, output, fresh)
     ]
-    options.prepare([path for job in work for path in job.files()], sources, fresh)
+    unfinished = (free_name(path) for job in work for path in job.outputs.values() if path != "-")
+    options.prepare([path for job in work for path in job.files()], sources, fresh, unfinished)
     table = options.table_beside(format_, columns, "-" in (output, contacts), quiet)
     with options.workers(jobs, cluster) as workers:
         sent = [job.sent_to(workers) for job in work] if cluster else work
@@ -166,8 +168,17 @@ def _plan(
             for stem in chain([name], (f"{name}-{number}" for number in count(2)))
         )
         # Nobody chose the name "stdin", so a pipe that is run again takes the next one.
-        free = (paths for paths in files if not any(map(os.path.exists, paths.values())))
+        free = (paths for paths in files if _is_free(list(paths.values())))
         yield source, name, next(free if source == "-" and fresh else files)
+
+
+def _is_free(paths: list[str]) -> bool:
+    """Tell whether none of the files is there, nor about to be written by another process."""
+    try:
+        options.claim(paths)
+    except Taken:
+        return False
+    return not any(map(os.path.exists, paths))
 
 
 def _forces(path: str | None, outputs: dict[int, str], name: str, sources: int) -> dict[int, str]:
