@@ -95,6 +95,89 @@ def test_no_room_for_the_output(spawn: Spawn, arguments: list[str]) -> None:
 
 
 @posix
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+@pytest.mark.parametrize("arguments", [["--help"], ["--version"], ["tighten", "-h"], ["start", "--list"]])
+@pytest.mark.parametrize("to", [">/dev/full", ">&-"])
+def test_no_room_for_the_help(arguments: list[str], to: str) -> None:
+    done = in_a_shell(" ".join(arguments), to)
+    why = "No space left on device" if to == ">/dev/full" else "standard output is closed"
+    assert done.stderr == f"sono: the output cannot be written: {why}\n"
+    assert done.returncode == 1
+
+
+def in_a_shell(arguments: str, redirection: str) -> "subprocess.CompletedProcess[str]":
+    """Run `sono ARGUMENTS` with the streams that a shell gives it."""
+    line = (
+        f"{sys.executable} -c 'from sono.cli import main; main(prog_name=\"sono\")' {arguments} {redirection}"
+    )
+    return subprocess.run(line, shell=True, capture_output=True, text=True, check=False)
+
+
+@posix
+@pytest.mark.parametrize(
+    ("arguments", "redirection", "code", "stdout", "stderr"),
+    [
+        ("measure 3_1.txt", ">&-", 1, "", "the output cannot be written: standard output is closed"),
+        ("start 3_1", ">&-", 1, "", "the output cannot be written: standard output is closed"),
+        (
+            f"tighten 3_1 -n 60 {' '.join(QUICK)}",
+            ">&-",
+            1,
+            "",
+            "the output cannot be written: standard output",
+        ),
+        (f"tighten 3_1 -n 60 {' '.join(QUICK)}", "2>&-", 0, "3_1\t60", ""),
+        (f"tighten 3_1 -n 60 {' '.join(QUICK)}", "<&- 2>&-", 0, "3_1\t60", ""),
+        (f"tighten 3_1 -n 60 -o - -q {' '.join(QUICK)}", "<&-", 0, "# 3_1: tight", ""),
+        ("measure - 3_1.txt", "<&-", 1, "3_1\t69", "<stdin>: cannot be read: standard input is closed"),
+        ("tighten - -n 60", "<&-", 1, "", "<stdin>: cannot be read: standard input is closed"),
+        ("compare -", "<&-", 1, "", "<stdin>: cannot be read: standard input is closed"),
+        ("search --list -", "<&-", 2, "", "-: cannot be read: standard input is closed"),
+        ("measure absent", "2>&-", 1, "", ""),
+        ("measure absent", "2>/dev/full", 1, "", ""),
+        ("absent", "2>/dev/full", 2, "", ""),
+        ("measure 3_1.txt", "<&- >&- 2>&-", 1, "", ""),
+    ],
+)
+def test_streams_that_are_closed(
+    folder: Path, arguments: str, redirection: str, code: int, stdout: str, stderr: str
+) -> None:
+    done = in_a_shell(arguments, redirection)
+    assert done.returncode == code
+    assert stdout in done.stdout
+    assert stderr in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@posix
+def test_control_characters_of_names_do_not_reach_a_terminal(folder: Path, sono: Sono, spawn: Spawn) -> None:
+    name = "a\x1b[31m\x07\x9b\u202eb"
+    (folder / f"{name}.txt").write_bytes((folder / "3_1.txt").read_bytes())
+    (folder / f"{name}.bad").write_text("x")
+    safe = r"a\x1b[31m\x07\x9b\u202eb"
+    for format in ("table", "tsv", "csv", "md", "latex", "json"):
+        result = sono("measure", f"{name}.txt", f"{name}.bad", f"{name}.absent", "--format", format)
+        assert not set(result.output) & {"\x1b", "\x07", "\x9b", "\u202e"}
+        assert f"sono: {safe}.bad:1: " in result.stderr
+    for wrong in (["measure", f"--{name}"], [name], ["search", "--list", name], ["start", name]):
+        result = sono(*wrong)
+        assert result.exit_code == 2
+        assert not set(result.output) & {"\x1b", "\x07", "\x9b", "\u202e"}
+    ours, theirs = os.openpty()
+    process = spawn("tighten", f"{name}.txt", "-n", "60", *QUICK, stderr=theirs)
+    assert process.wait() == 0
+    os.write(theirs, b"end")
+    shown = b""
+    while not shown.endswith(b"end"):
+        shown += os.read(ours, 1 << 16)
+    assert rb"a\x1b[31m" in shown
+    assert b"\x1b[31m" not in shown
+    assert "\x1b" not in (folder / f"{name}.n60.txt").read_text()
+    os.close(theirs)
+    os.close(ours)
+
+
+@posix
 def test_ctrl_c_while_waiting_for_input(spawn: Spawn) -> None:
     process = spawn("measure", "-", stdin=subprocess.PIPE)
     assert process.stdin

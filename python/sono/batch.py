@@ -31,7 +31,7 @@ from sono.pipeline import (
     forces,
     measure,
 )
-from sono.tables import Row
+from sono.tables import Row, printable
 from sono.workers import Workers
 
 SAVE_EVERY = 10.0
@@ -457,7 +457,7 @@ def _header(job: Job, tight: Tight, status: str) -> list[str]:
 
 def title(name: str, status: str, m: Measures) -> list[str]:
     """Return the comments that a file of a rope begins with."""
-    name = name.encode(errors="replace").decode()  # a file's name need not be text
+    name = printable(name.encode(errors="replace").decode())  # a file's name need not be text
     l_c, l_a = (f"{value:.8f}" if value is not None else "-" for value in (m.l_c, m.l_a))
     return [
         f"{name}: {status}, rope radius R_s = 1",

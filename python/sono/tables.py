@@ -17,6 +17,8 @@ from typing import Self, TextIO
 Value = str | int | float | None
 Row = Mapping[str, Value]
 
+_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+
 CAPTION = "Ropelength is length over the RADIUS of the rope (R = 1)."
 
 
@@ -293,8 +295,13 @@ def _rounded(row: Row, column: Column) -> str:
 def _exact(value: Value) -> str:
     if isinstance(value, str):
         # A row stays one line, and a file name that is not UTF-8 does not stop the table. JSON keeps both.
-        return re.sub(r"[\t\n\v\f\r]", " ", value).encode(errors="replace").decode()
+        return printable(re.sub(r"[\t\n\v\f\r]", " ", value).encode(errors="replace").decode())
     return "-" if value is None else str(value)
+
+
+def printable(text: str, kept: str = "") -> str:
+    """Escape what would move the cursor of a terminal, colour it or turn its text round, but for `kept`."""
+    return _CONTROL.sub(lambda c: c[0] if c[0] in kept else c[0].encode("unicode_escape").decode(), text)
 
 
 def _latex(text: str) -> str:

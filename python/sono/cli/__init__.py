@@ -1,12 +1,15 @@
 """The command line: one module a command, imported when it is used."""
 
 import io
-import os
+import signal
 import sys
 from importlib import import_module
 from typing import Any
 
 import click
+
+from sono.cli import streams
+from sono.tables import printable
 
 COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",
@@ -34,20 +37,32 @@ class _Commands(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
 
-    def invoke(self, ctx: click.Context) -> Any:
+    def main(self, *args: Any, **more: Any) -> Any:
         """Run a command, and end well whatever stops it."""
+        if not more.pop("standalone_mode", True):
+            return super().main(*args, standalone_mode=False, **more)
+        streams.secure()
+        code: object = 1
+        try:
+            code = super().main(*args, standalone_mode=False, **more)
+        except click.ClickException as error:
+            message = io.StringIO()
+            error.show(message)
+            streams.tell(printable(message.getvalue(), "\n").rstrip("\n"))
+            code = error.exit_code
+        except MemoryError:
+            streams.complain("this needs more memory than there is")
+        except OSError as error:  # those of files are met where files are read and written
+            streams.unwritten(error)
+        sys.exit(code if isinstance(code, int) else 0)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; Ctrl-C ends it, and no second one hastens the end."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
             ctx.exit(130)
-        except MemoryError:
-            click.echo("sono: this needs more memory than there is", err=True)
-        except OSError as error:  # those of files are met where files are read and written
-            if not isinstance(error, BrokenPipeError):
-                click.echo(f"sono: the output cannot be written: {error.strerror}", err=True)
-            # What could not be written is still in the buffer; Python would try again at its exit.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        ctx.exit(1)
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -62,6 +77,3 @@ def main() -> None:
       sono tighten trefoil.txt -n 120,240,480
       sono measure trefoil.n480.txt
     """
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        # A file's name in characters that the terminal has not must not stop a table.
-        sys.stdout.reconfigure(errors="backslashreplace")

@@ -9,12 +9,14 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
 
 from sono import tables
+from sono.cli.streams import complain as complain
 from sono.locks import Claims, Taken
 from sono.tables import TableWriter
 
@@ -69,9 +71,12 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> sli
 
 
 def _listed(path: str) -> list[str]:
-    with click.open_file(path, encoding="utf-8", errors="surrogateescape") as lines:
-        words = (line.split("#")[0].strip() for line in lines)
-        return [word for word in words if word]
+    try:
+        with click.open_file(path, encoding="utf-8", errors="surrogateescape") as lines:
+            words = (line.split("#")[0].strip() for line in lines)
+            return [word for word in words if word]
+    except OSError as error:
+        raise click.UsageError(f"{path}: cannot be read: {error.strerror}") from error
 
 
 def parallel(jobs_help: str) -> Callable[[Function], Function]:
@@ -180,11 +185,6 @@ def check_suffix(path: str) -> None:
         raise click.UsageError(str(error)) from error
 
 
-def complain(message: str) -> None:
-    """An error or a warning, on standard error."""
-    click.echo(f"sono: {message}", err=True)
-
-
 def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool, more: Iterable[str] = ()) -> None:
     """Before hours are spent: see that these files can be written, by nobody else, and read standard input.
 
@@ -207,7 +207,8 @@ def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool, more: Ite
         _try(path)
     if "-" in sources:
         # Here, since a signal does not reach a thread that waits for input.
-        sys.stdin = io.TextIOWrapper(io.BytesIO(sys.stdin.buffer.read()))
+        with suppress(OSError):  # the job that reads it again will say so
+            sys.stdin = io.TextIOWrapper(io.BytesIO(sys.stdin.buffer.read()))
 
 
 def claim(paths: Sequence[str]) -> None:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 from sono.cli import options
-from sono.tables import TableWriter
+from sono.tables import TableWriter, printable
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
@@ -60,7 +60,7 @@ class Batch:
             if self.stop:
                 self.not_begun += 1
                 return
-            task = self.bar.add_task(job.name, total=1, what="")
+            task = self.bar.add_task(printable(job.name), total=1, what="")
         try:
             for result in _guarded(job, lambda done, what: self.watch(task, done, what)):
                 with self.lock, self.bar_hidden():
