@@ -39,12 +39,14 @@ class _Commands(click.Group):
 
     def main(self, *args: Any, **more: Any) -> Any:
         """Run a command, and end well whatever stops it."""
-        if not more.pop("standalone_mode", True):
-            return super().main(*args, standalone_mode=False, **more)
+        alone = more.get("standalone_mode", True)
+        more["standalone_mode"] = False
+        if not alone:
+            return super().main(*args, **more)
         streams.secure()
         code: object = 1
         try:
-            code = super().main(*args, standalone_mode=False, **more)
+            code = super().main(*args, **more)
         except click.ClickException as error:
             message = io.StringIO()
             error.show(message)
