@@ -3,10 +3,11 @@
 Counts are exact and the same on every machine of one kind; seconds are of one core, whatever it is.
 """
 
+import json
 import time
 
 import sono
-from sono._core import Polish
+from sono._core import Polish, Tightener, measure
 from sono.pipeline import Method, Progress, Stopped
 
 GOAL = 32.7402
@@ -52,8 +53,33 @@ def levels() -> None:
         n *= 2
 
 
+def sweeps() -> None:
+    """What a sweep of SONO and a measurement cost a vertex, on a trefoil that settles."""
+    curve = sono.tighten(sono.start("3_1"), 480).curve
+    endless = json.dumps({"settle_sweeps": 10_000_000})
+    print("n\tns a sweep and vertex\tns a measurement and vertex")
+    for n in (480, 1920, 7680, 30_000):
+        tightener = Tightener(curve, "settle", n, endless)
+        before = tightener.advance(1).sweeps
+        start = time.perf_counter()
+        sweeps = tightener.advance(2).sweeps - before
+        swept = time.perf_counter()
+        measures = 0
+        fine = tightener.best()
+        started = time.perf_counter()
+        while time.perf_counter() < started + 1:
+            measure(fine)
+            measures += 1
+        measured = time.perf_counter() - started
+        print(
+            f"{n}\t{1e9 * (swept - start) / (sweeps * n):.1f}\t{1e9 * measured / (measures * n):.0f}",
+            flush=True,
+        )
+
+
 if __name__ == "__main__":
     for method in ("sono", "both"):
         seconds, reached = race(method)
         print(f"trefoil, n = 480, L_p <= {GOAL} by {method}: {seconds:.2f} s (L_p {reached})", flush=True)
     levels()
+    sweeps()

@@ -41,6 +41,7 @@ def test_rows_are_what_their_files_measure(knot: str) -> None:
     assert float(row["l_c"] or 0) > float(row["l_c_fine"] or 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("knot", ["3_1", "5_2", "8_19"])
 def test_the_finer_bound_is_what_the_file_leads_to(knot: str) -> None:
     row = SHIPPED[knot]
@@ -63,6 +64,7 @@ def test_the_atlas_is_whole() -> None:
     assert sum(float(row["l_c_difference"] or 1) <= 0 for row in SHIPPED.values()) >= 244
 
 
+@pytest.mark.slow
 def test_a_row_never_gets_worse(tmp_path: Path) -> None:
     atlas = Atlas(tmp_path)
     # 6_1 has two minima; the braid, variant 0, leads to the longer one.

@@ -94,6 +94,7 @@ def test_a_lost_result_is_made_again(job: Job) -> None:
     assert Path("40.txt").read_bytes() == written
 
 
+@pytest.mark.slow
 def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch, "SAVE_EVERY", 0)
     stages = set()
@@ -135,6 +136,7 @@ def test_a_disk_that_fills_up(job: Job, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.undo()
 
 
+@pytest.mark.slow
 def test_a_disk_that_is_full_for_a_while(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch, "SAVE_EVERY", 0)
 

@@ -23,6 +23,7 @@ def rows(text: str) -> list[tables.Row]:
     return tables.read("rows.tsv")
 
 
+@pytest.mark.slow
 def test_the_rows_are_minima_and_the_file_is_the_shortest(folder: Path, sono: Sono) -> None:
     result = sono("search", "5_2", "--trials", "10", "-j", "2")
     assert (result.exit_code, result.stderr) == (0, "")
@@ -87,6 +88,7 @@ def test_what_is_finished_is_kept(folder: Path, sono: Sono) -> None:
     assert rows(sono("search", "3_1", "--trials", "3", "--resume").stdout)[0]["variant"] is not None
 
 
+@pytest.mark.slow
 def test_a_checkpoint_makes_the_whole_of_two_halves(
     folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -146,6 +148,7 @@ def test_usage_errors(sono: Sono, arguments: list[str], message: str) -> None:
     assert message in result.stderr
 
 
+@pytest.mark.slow
 def test_a_signal_keeps_the_best(folder: Path, spawn: Spawn) -> None:
     process = spawn("search", "3_1", "--time-limit", "600", "--checkpoint", "kept")
     for _ in range(600):
@@ -186,6 +189,7 @@ def test_a_finished_file_of_another_knot_or_edge_length_is_not_kept(folder: Path
     assert "3_1.tight.txt: is another knot than 4_1; move it away" in other.stderr
 
 
+@pytest.mark.slow
 def test_a_resumed_search_takes_nothing_away(folder: Path, sono: Sono, spawn: Spawn) -> None:
     row = rows(sono("search", "3_1", "--trials", "2", "--dl", "0.1").stdout)[0]
     finished = (folder / "3_1.tight.txt").read_text()
@@ -214,6 +218,7 @@ def search_again_by_the_braid(sono: Sono) -> list[tables.Row]:
         return rows(sono("search", "6_1", "--trials", "1", "--seed", "1", "--resume").stdout)
 
 
+@pytest.mark.slow
 def test_what_a_stopped_search_left_is_not_replaced_by_a_longer_rope(folder: Path, sono: Sono) -> None:
     best = rows(sono("search", "6_1", "--trials", "8", "--minima", "1").stdout)[0]
     file = folder / "6_1.tight.txt"
@@ -223,6 +228,7 @@ def test_what_a_stopped_search_left_is_not_replaced_by_a_longer_rope(folder: Pat
     assert (file.read_text(), again[0]["l_a"]) == (before, best["l_a"])
 
 
+@pytest.mark.slow
 def test_a_better_rope_is_not_overwritten(folder: Path, sono: Sono) -> None:
     best = rows(sono("search", "6_1", "--trials", "8", "--minima", "1").stdout)[0]
     assert float(best["l_a"] or 0) < 56.71

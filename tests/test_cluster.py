@@ -108,6 +108,7 @@ def test_a_search_is_the_same_on_a_cluster(sono: Sono, cluster: Cluster) -> None
     assert vertices(Path("far.txt")) == vertices(Path("near.txt"))
 
 
+@pytest.mark.slow
 def test_a_killed_worker_loses_nothing(folder: Path, spawn: Spawn, cluster: Cluster) -> None:
     knots = ["3_1", "4_1", "5_1", "5_2", "6_1", "6_2"]
     process = spawn(
@@ -123,6 +124,7 @@ def test_a_killed_worker_loses_nothing(folder: Path, spawn: Spawn, cluster: Clus
     assert sorted(path.name for path in (folder / "out").iterdir()) == [f"{knot}.n100.txt" for knot in knots]
 
 
+@pytest.mark.slow
 def test_a_lost_cluster_leaves_the_best(folder: Path, spawn: Spawn, cluster: Cluster) -> None:
     process = spawn("search", "3_1", "--time-limit", "600", "--cluster", cluster.address)
     wait_for((folder / "3_1.tight.txt").exists)
@@ -134,6 +136,7 @@ def test_a_lost_cluster_leaves_the_best(folder: Path, spawn: Spawn, cluster: Clu
     assert vertices(folder / "3_1.tight.txt")
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_the_cluster(folder: Path, spawn: Spawn, cluster: Cluster) -> None:
     process = spawn("search", "3_1", "--time-limit", "600", "--cluster", cluster.address)
     wait_for((folder / "3_1.tight.txt").exists)

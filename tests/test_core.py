@@ -15,6 +15,7 @@ from sono import _core, library
 ENDLESS = json.dumps({"anneal_sweeps": 4_000_000_000})
 
 
+@pytest.mark.slow
 def test_stubs_match_the_module(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mypy.stubtest", "--ignore-disjoint-bases", "sono._core"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)

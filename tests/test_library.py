@@ -77,6 +77,7 @@ def test_mirror_images() -> None:
     np.testing.assert_array_equal(start("M3_1")[0], mirror(start("3_1"))[0])
 
 
+@pytest.mark.slow
 def test_variants_differ_but_not_in_type() -> None:
     for name in ("8_18", "T(2,4)", "1 1 1 2 2 2", "Hopf"):
         starts = [start(name, variant) for variant in range(4)]

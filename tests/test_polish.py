@@ -28,6 +28,7 @@ def table(knot: str, targets: list[int]) -> list[Tight]:
     return tight
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("knot", ["3_1", "5_1", "7_1", "9_1"])
 def test_every_row_of_the_papers_tables_is_beaten(knot: str) -> None:
     printed = rows(knot)

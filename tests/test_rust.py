@@ -3,6 +3,9 @@
 import subprocess
 from pathlib import Path
 
+import pytest
 
+
+@pytest.mark.slow
 def test_cargo_test() -> None:
     subprocess.run(["cargo", "test", "--release", "--quiet"], cwd=Path(__file__).parent.parent, check=True)

@@ -144,6 +144,7 @@ def test_beads_seated_anew_make_ropes_shorter() -> None:
     assert min(two.length - one.length for one, two in zip(before, after, strict=True)) < -1e-4
 
 
+@pytest.mark.slow
 def test_the_shortest_known_rope_is_found() -> None:
     found = run("6_1", 16)
     best = found.minima[0]
@@ -160,6 +161,7 @@ def test_the_workers_do_not_matter() -> None:
     assert one.state() == other.state()
 
 
+@pytest.mark.slow
 def test_a_saved_search_goes_on_as_if_it_had_never_stopped() -> None:
     whole = Search()
     for _ in whole.run(source("3_1"), whole.rounds(24), here):
@@ -185,6 +187,7 @@ def test_shapes_are_told_apart_by_their_radii() -> None:
     assert [(shape.variant, shape.hits) for shape in found.shapes] == [(2, 1), (1, 2)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("knot", ["3_1", "7_4", "T(2,4)"])
 def test_a_curve_is_searched_by_its_scrambles(knot: str) -> None:
     curve = library.start(knot)

@@ -26,6 +26,7 @@ def test_the_trefoil_of_480_vertices_beats_the_paper() -> None:
     assert tight.measures.l_c <= 32.75542
 
 
+@pytest.mark.slow
 def test_symmetric_t_2_5_breaks_its_symmetry() -> None:
     # Staying five-fold symmetric it would end at 48.19.
     l_a = [

@@ -25,7 +25,9 @@ def assert_valid(tight: Tight) -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if COARSE[name] > 200 else name for name in NAMES]
+)
 def test_a_loose_start_keeps_its_type(name: str, seed: int) -> None:
     start = formats.read(KNOTS / f"{name}.txt").components
     tight = tighten(start, COARSE[name], method="sono", seed=seed, settings=QUICK)
@@ -49,6 +51,7 @@ def test_the_polish_alone_keeps_the_type(name: str) -> None:
     assert fingerprint(tight.curve) == fingerprint(start)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_an_entangled_unknot_unties_itself(seed: int) -> None:
     entangled = scramble(library.start("unknot"), seed)
@@ -57,6 +60,7 @@ def test_an_entangled_unknot_unties_itself(seed: int) -> None:
     assert tight.measures.l_p == pytest.approx(2 * np.pi, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["3_1", "4_1", "chain3"])
 def test_a_scrambled_knot_finds_its_way_back(name: str) -> None:
     start = library.start(name)
