@@ -155,7 +155,7 @@ def test_control_characters_of_names_do_not_reach_a_terminal(folder: Path, sono:
     (folder / f"{name}.txt").write_bytes((folder / "3_1.txt").read_bytes())
     (folder / f"{name}.bad").write_text("x")
     safe = r"a\x1b[31m\x07\x9b\u202eb"
-    for format in ("table", "tsv", "csv", "md", "latex", "json"):
+    for format in ("table", "tsv", "csv", "md", "latex", "jsonl", "json"):
         result = sono("measure", f"{name}.txt", f"{name}.bad", f"{name}.absent", "--format", format)
         assert not set(result.output) & {"\x1b", "\x07", "\x9b", "\u202e"}
         assert f"sono: {safe}.bad:1: " in result.stderr
@@ -203,5 +203,5 @@ def test_a_pipeline(folder: Path) -> None:
     done = subprocess.run(line, shell=True, capture_output=True, text=True, check=False)
     assert done.stderr == ""
     header, row = done.stdout.splitlines()
-    assert header.split("\t")[:4] == ["knot", "n", "dl", "L_p"]
+    assert header.split("\t")[:4] == ["knot", "n", "dl", "l_p"]
     assert row.split("\t")[:2] == ["stdin", "60"]

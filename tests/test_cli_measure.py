@@ -15,7 +15,9 @@ ROWS = "0 0 0\n2 0 0\n2 2 1\n0 2 0\n"
 
 
 def test_a_row_is_what_the_library_measures(folder: Path, sono: Sono) -> None:
-    result = sono("measure", "3_1.txt", "Hopf.txt", "--format", "json", "--columns", ",".join(tables.COLUMNS))
+    result = sono(
+        "measure", "3_1.txt", "Hopf.txt", "--format", "jsonl", "--columns", ",".join(tables.COLUMNS)
+    )
     assert (result.exit_code, result.stderr) == (0, "")
     for name, line in zip(["3_1", "Hopf"], result.stdout.splitlines(), strict=True):
         row = json.loads(line)
@@ -33,7 +35,7 @@ def test_standard_input(folder: Path, sono: Sono) -> None:
 
 def test_tsv_elsewhere_than_on_a_terminal(sono: Sono) -> None:
     header, row = sono("measure", "3_1.txt").stdout.splitlines()
-    assert header.split("\t") == ["knot", "n", "dl", "L_p", "L_c", "L_a", "dispersion", "R_s"]
+    assert header.split("\t") == ["knot", "n", "dl", "l_p", "l_c", "l_a", "dispersion", "r_s"]
     assert len(row.split("\t")) == 8
 
 
@@ -49,7 +51,7 @@ def test_aligned_text_on_a_terminal(spawn: Spawn) -> None:
 
 @pytest.mark.parametrize("format", tables.FORMATS)
 def test_every_format(sono: Sono, format: str) -> None:
-    result = sono("measure", "3_1.txt", "--format", format, "--columns", "knot, l_p")
+    result = sono("measure", "3_1.txt", "--format", format, "--columns", "knot, L_p")
     assert result.exit_code == 0
     assert "36.7319" in result.stdout
 

@@ -33,7 +33,7 @@ def names(folder: Path) -> list[str]:
 
 def test_a_row_for_each_n(folder: Path, sono: Sono) -> None:
     columns = ",".join(tables.COLUMNS)
-    result = sono("tighten", "3_1.txt", "-n", "60,40,60", *QUICK, "--format", "json", "--columns", columns)
+    result = sono("tighten", "3_1.txt", "-n", "60,40,60", *QUICK, "--format", "jsonl", "--columns", columns)
     assert (result.exit_code, result.stderr) == (0, "")
     rows = [json.loads(line) for line in result.stdout.splitlines()]
     assert [row["n"] for row in rows] == [40, 60]
@@ -50,7 +50,7 @@ def test_a_row_for_each_n(folder: Path, sono: Sono) -> None:
 
 def test_default_columns_are_the_papers_and_the_status(sono: Sono) -> None:
     header, row = sono("tighten", "3_1.txt", "-n", "60", *QUICK).stdout.splitlines()
-    assert header.split("\t") == ["knot", "n", "dl", "L_p", "L_c", "L_a", "status"]
+    assert header.split("\t") == ["knot", "n", "dl", "l_p", "l_c", "l_a", "status"]
     assert row.split("\t")[-1] == "tight"
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sono.formats import FormatError
-from sono.tables import COLUMNS, DEFAULT, FORMATS, Row, read, writer
+from sono.tables import COLUMNS, DEFAULT, FORMATS, Row, key_of, read, writer
 
 TREFOIL: Row = {
     "knot": "3_1",
@@ -44,12 +44,12 @@ def test_text() -> None:
 
 def test_tsv_and_csv_keep_every_digit() -> None:
     assert table("tsv", TREFOIL, FAILED) == (
-        "knot\tn\tdl\tL_p\tL_c\tL_a\n"
+        "knot\tn\tdl\tl_p\tl_c\tl_a\n"
         "3_1\t120\t0.2724306812345678\t32.69168123456789\t32.94095\t32.741534\n"
         "a|b & 100% \t60\t-\t-\t-\t-\n"
     )
     assert table("csv", TREFOIL, FAILED) == (
-        "knot,n,dl,L_p,L_c,L_a\n"
+        "knot,n,dl,l_p,l_c,l_a\n"
         "3_1,120,0.2724306812345678,32.69168123456789,32.94095,32.741534\n"
         "a|b & 100% ,60,-,-,-,-\n"
     )
@@ -66,7 +66,7 @@ def test_names_do_not_break_tsv_and_csv(format: str, delimiter: str) -> None:
 
 
 def test_json_lines() -> None:
-    lines = table("json", TREFOIL, FAILED).splitlines()
+    lines = table("jsonl", TREFOIL, FAILED).splitlines()
     assert json.loads(lines[0]) == {key: TREFOIL[key] for key in DEFAULT}
     assert json.loads(lines[1]) == {
         "knot": "a|b & 100%\t",
@@ -78,8 +78,34 @@ def test_json_lines() -> None:
     }
 
 
+def test_a_json_array() -> None:
+    assert json.loads(table("json")) == []
+    lines = table("jsonl", TREFOIL, FAILED, TREFOIL).splitlines()
+    assert json.loads(table("json", TREFOIL, FAILED, TREFOIL)) == list(map(json.loads, lines))
+
+
+def test_a_column_goes_by_its_key_or_its_header() -> None:
+    for column in COLUMNS.values():
+        for name in (column.key, column.header, column.key.upper(), f" {column.header} "):
+            assert key_of(name) == column.key
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "knot\tL_a\tL_c(fine)\tcolour\n3_1\t32.7\t-\tred\n\n",
+        "knot,l_a,l_c_fine\n3_1,32.7,-\n",
+        '{"knot": "3_1", "L_a": 32.7, "l_c_fine": null, "colour": []}\n\n',
+        '[{"knot": "3_1",\n "l_a": 32.7, "L_c(fine)": null}]',
+    ],
+)
+def test_either_spelling_is_read(text: str, tmp_path: Path) -> None:
+    (tmp_path / "table").write_text(text)
+    assert read(str(tmp_path / "table")) == [{"knot": "3_1", "l_a": 32.7, "l_c_fine": None}]
+
+
 def test_json_has_no_infinity() -> None:
-    assert table("json", {"sr": math.inf}, columns=("sr",)) == '{"sr": null}\n'
+    assert table("jsonl", {"sr": math.inf}, columns=("sr",)) == '{"sr": null}\n'
 
 
 def test_markdown() -> None:
@@ -133,7 +159,7 @@ def test_precision_of_every_column() -> None:
     assert {key: cells[key].strip() for key in expected} == expected
 
 
-@pytest.mark.parametrize("format", ["tsv", "csv", "json"])
+@pytest.mark.parametrize("format", ["tsv", "csv", "jsonl", "json"])
 def test_a_table_is_read_as_it_was_written(format: str, tmp_path: Path) -> None:
     rows: list[Row] = [TREFOIL, {"knot": "m3_1", "n": 7, "l_a": None, "seconds": 2.0}]
     columns = ("knot", "n", "dl", "l_a", "seconds")
@@ -146,9 +172,19 @@ def test_a_table_is_read_as_it_was_written(format: str, tmp_path: Path) -> None:
     [
         ("", "table:1: has no column knot"),
         ("n\tL_a\n3\t4\n", "table:1: has no column knot"),
-        ("knot\tn\n3_1\tx\n", "table:2: does not fit the header: 'x' in the column n is no whole number"),
+        ("knot\tn\n3_1\tx\n", "table:2: 'x' in the column n is no whole number"),
         ("knot\tn\n3_1\n", "table:2: does not fit the header: it has 1 cells for 2 columns"),
-        ('{"knot": "3_1"}\n{"knot": \n', "table:2: is no JSON"),
+        ("knot\tl_a\n3_1\tnan\n", "table:2: 'nan' in the column l_a is no number"),
+        (f"knot\tn\n3_1\t{'9' * 5000}\n", r"table:2: '9{26}\.\.\. in the column n is no whole number"),
+        ('{"knot": "3_1"}\n{"knot": \n', "table:2: is no JSON; give a table that sono wrote as tsv, csv"),
+        ('{"knot": "3_1", "l_a": "x"}\n', "table:1: 'x' in the column l_a is no number"),
+        ('{"knot": "3_1", "l_a": [1]}\n', r"table:1: \[1\] in the column l_a is no number"),
+        ('{"knot": "3_1", "n": 1.5}\n', "table:1: 1.5 in the column n is no whole number"),
+        ('{"knot": "3_1", "l_c": NaN}\n', "table:1: nan in the column l_c is no number"),
+        ('{"knot": 31}\n', "table:1: is no row with a knot"),
+        ('[\n{"knot": "3_1"},\n{"knot" "4_1"}\n]\n', "table:3: is no JSON"),
+        ('[{"knot": "3_1"}, 7]', "table: row 2: is no row with a knot"),
+        ("[" * 100_000, "table:1: is no JSON"),
     ],
 )
 def test_no_table(text: str, message: str, tmp_path: Path) -> None:
@@ -194,7 +230,7 @@ def test_names_that_are_not_utf_8_can_be_printed(format: str) -> None:
 
 def test_unknown_names_are_answered_with_the_known_ones() -> None:
     with pytest.raises(
-        ValueError, match="unknown table format 'xls'; the formats are: table, tsv, csv, json, md"
+        ValueError, match="unknown table format 'xls'; the formats are: table, tsv, csv, jsonl, json, md"
     ):
         writer("xls", DEFAULT, io.StringIO())
     with pytest.raises(ValueError, match="unknown column 'L'; the columns are: knot, n, components, dl, l_p"):

@@ -1,7 +1,9 @@
-"""Rows of results as a table: aligned text, TSV, CSV, JSON lines, Markdown or LaTeX.
+"""Rows of results as a table: aligned text, TSV, CSV, JSON lines, a JSON array, Markdown or LaTeX.
 
 Each row is written and flushed as soon as it is finished, so that a later failure loses nothing. Text,
-Markdown and LaTeX round for the reader; TSV, CSV and JSON keep every digit for the next program.
+Markdown and LaTeX are for readers: they round, and head their columns with the paper's symbols, L_p. TSV, CSV
+and JSON are for the next program: they keep every digit, and call a column by its key, l_p. Wherever a column
+is named, either will do.
 """
 
 import csv
@@ -9,10 +11,11 @@ import io
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Self, TextIO
+from typing import Any, Self, TextIO
 
 Value = str | int | float | None
 Row = Mapping[str, Value]
@@ -80,6 +83,8 @@ COLUMNS = {
         Column("file", "file", "file", "", 12),
     )
 }
+
+_KEYS = {name.casefold(): column.key for column in COLUMNS.values() for name in (column.header, column.key)}
 
 DEFAULT = ("knot", "n", "dl", "l_p", "l_c", "l_a")
 
@@ -151,7 +156,7 @@ class _Delimited(TableWriter):
     delimiter: str
 
     def _head(self) -> str:
-        return self._joined([column.header for column in self._columns])
+        return self._joined([column.key for column in self._columns])
 
     def _line(self, row: Row) -> str:
         return self._joined([_exact(row.get(column.key)) for column in self._columns])
@@ -170,7 +175,7 @@ class _Csv(_Delimited):
     delimiter = ","
 
 
-class _Json(TableWriter):
+class _JsonLines(TableWriter):
     def _head(self) -> str:
         return ""
 
@@ -179,6 +184,22 @@ class _Json(TableWriter):
         # JSON has no infinity: the SR of a curve without distant vertices becomes null.
         finite = {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in values.items()}
         return json.dumps(finite) + "\n"
+
+
+class _Json(_JsonLines):
+    """An array, complete as soon as its end is written."""
+
+    _between = ""
+
+    def _head(self) -> str:
+        return "[\n"
+
+    def _line(self, row: Row) -> str:
+        line, self._between = self._between + super()._line(row), ","
+        return line
+
+    def _foot(self) -> str:
+        return "]\n"
 
 
 class _Markdown(TableWriter):
@@ -217,74 +238,110 @@ FORMATS: dict[str, type[TableWriter]] = {
     "table": _Text,
     "tsv": _Tsv,
     "csv": _Csv,
+    "jsonl": _JsonLines,
     "json": _Json,
     "md": _Markdown,
     "latex": _Latex,
 }
 
 
+def key_of(name: str) -> str:
+    """Return the key of the column of this name: its key or its header, in any case. Raises `ValueError`."""
+    try:
+        return _KEYS[name.strip().casefold()]
+    except KeyError:
+        raise ValueError(f"unknown column {name!r}; the columns are: {', '.join(COLUMNS)}") from None
+
+
 def writer(format: str, columns: Sequence[str], stream: TextIO) -> TableWriter:
-    """Make the writer of a format in `FORMATS` for some keys of `COLUMNS`. Raises `ValueError` for others."""
+    """Make the writer of a format in `FORMATS` for some `COLUMNS`. Raises `ValueError` for others."""
     if format not in FORMATS:
         raise ValueError(f"unknown table format {format!r}; the formats are: {', '.join(FORMATS)}")
-    for key in columns:
-        if key not in COLUMNS:
-            raise ValueError(f"unknown column {key!r}; the columns are: {', '.join(COLUMNS)}")
-    return FORMATS[format]([COLUMNS[key] for key in columns], stream)
+    return FORMATS[format]([COLUMNS[key_of(name)] for name in columns], stream)
+
+
+READ = "give a table that sono wrote as tsv, csv, jsonl or json"
 
 
 def read(source: str) -> list[Row]:
-    """Read a table in TSV, CSV or JSON lines, "-" for standard input; columns that are not ours are left out.
+    """Read a table in TSV, CSV or JSON, "-" for standard input; columns that are not ours are left out.
 
     Raises `FormatError` naming file and line.
     """
-    from sono.formats import FormatError, load  # here, since numpy would make --help wait
+    from sono.formats import load  # here, since numpy would make --help wait
 
     name, text = load(source)
-    first, *_ = text.splitlines() or [""]
-    if first.startswith("{"):
-        rows = []
-        for number, line in enumerate(text.splitlines(), 1):
-            try:
-                rows += [_of_json(line)] if line else []
-            except ValueError as error:
-                raise FormatError.at(name, number, str(error)) from error
-        return rows
+    return list(_of_json(name, text) if text.lstrip()[:1] in ("{", "[") else _of_cells(name, text))
+
+
+def _of_json(name: str, text: str) -> Iterator[Row]:
+    """Read an array of rows, or a row a line."""
+    from sono.formats import FormatError
+
+    if text.lstrip().startswith("["):
+        rows = [(f"{name}: row {number}", row) for number, row in enumerate(_parsed(name, 1, text), 1)]
+    else:
+        lines = enumerate(text.splitlines(), 1)
+        rows = [(f"{name}:{number}", _parsed(name, number, line)) for number, line in lines if line.strip()]
+    for where, row in rows:
+        if not isinstance(row, dict) or not isinstance(row.get("knot"), str):
+            raise FormatError(f"{where}: is no row with a knot; {READ}")
+        yield _row(where, row)
+
+
+def _parsed(name: str, line: int, text: str) -> Any:
+    """Read JSON that begins on this line."""
+    from sono.formats import FormatError
+
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise FormatError.at(name, line + getattr(error, "lineno", 1) - 1, f"is no JSON; {READ}") from error
+
+
+def _of_cells(name: str, text: str) -> Iterator[Row]:
+    """Read TSV or CSV."""
+    from sono.formats import FormatError
+
     csv.field_size_limit(2**31 - 1)  # a cell may be longer than csv expects
+    first, *_ = text.splitlines() or [""]
     lines = csv.reader(io.StringIO(text), delimiter="\t" if "\t" in first else ",")
-    keys = {column.header: key for key, column in COLUMNS.items()}
-    header = [keys.get(cell, cell) for cell in next(lines, [])]
-    if "knot" not in header:
-        raise FormatError.at(name, 1, "has no column knot; give a table that sono wrote as tsv, csv or json")
     try:
-        return [_of_cells(header, cells) for cells in lines]
-    except (ValueError, csv.Error) as error:
-        raise FormatError.at(name, lines.line_num, f"does not fit the header: {error}") from error
+        header = next(lines, [])
+        if "knot" not in map(str.strip, header):
+            raise FormatError.at(name, 1, f"has no column knot; {READ}")
+        for cells in filter(None, lines):
+            where = f"{name}:{lines.line_num}"
+            if len(cells) != len(header):
+                wrong = f"it has {len(cells)} cells for {len(header)} columns; a - stands for none"
+                raise FormatError(f"{where}: does not fit the header: {wrong}")
+            row = dict(zip(header, cells, strict=True))
+            yield _row(where, {key: None if cell == "-" else cell for key, cell in row.items()})
+    except csv.Error as error:
+        raise FormatError.at(name, lines.line_num, f"is no row: {error}; {READ}") from error
 
 
-def _of_json(line: str) -> Row:
-    try:
-        row = json.loads(line)
-    except ValueError as error:
-        raise ValueError(f"is no JSON: {error}") from error
-    if not (isinstance(row, dict) and "knot" in row):
-        raise ValueError("is no row with a knot; give a table that sono wrote as tsv, csv or json")
-    return {key: value for key, value in row.items() if key in COLUMNS}
+def _row(where: str, values: Mapping[str, object]) -> Row:
+    """Give the values of our columns. Raises `FormatError` for one of a wrong kind."""
+    return {
+        column.key: _value(where, column, value)
+        for name, value in values.items()
+        if (column := COLUMNS.get(_KEYS.get(name.strip().casefold(), "")))
+    }
 
 
-def _of_cells(header: Sequence[str], cells: Sequence[str]) -> Row:
-    if len(cells) != len(header):
-        raise ValueError(f"it has {len(cells)} cells for {len(header)} columns; a - stands for none")
-    return {key: _of_cell(key, cell) for key, cell in zip(header, cells, strict=True) if key in COLUMNS}
+def _value(where: str, column: Column, value: object) -> Value:
+    from sono.formats import FormatError
 
-
-def _of_cell(key: str, cell: str) -> Value:
-    kind = COLUMNS[key].kind
-    try:
-        return None if cell == "-" else kind(cell)
-    except ValueError:
-        what = "whole number" if kind is int else "number"
-        raise ValueError(f"{cell!r} in the column {COLUMNS[key].header} is no {what}") from None
+    if value is None or (column.kind is str and isinstance(value, str)):
+        return value
+    with suppress(ValueError, OverflowError):
+        number = column.kind(value) if isinstance(value, str | int | float) else math.nan
+        if number == value or (isinstance(value, str) and number == number):
+            return number
+    what = {int: "whole number", float: "number", str: "text"}[column.kind]
+    shown = repr(value) if len(repr(value)) <= 30 else f"{repr(value)[:27]}..."
+    raise FormatError(f"{where}: {shown} in the column {column.key} is no {what}")
 
 
 def _rounded(row: Row, column: Column) -> str:

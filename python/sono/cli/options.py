@@ -123,7 +123,7 @@ def table(default: Sequence[str]) -> Callable[[Function], Function]:
             show_default=True,
             callback=_columns,
             metavar="KEY,...",
-            help=f"Columns of the table, of: {', '.join(tables.COLUMNS)}.",
+            help=f"Columns of the table, l_p or L_p, of: {', '.join(tables.COLUMNS)}.",
         )(function)
 
     return decorate
@@ -148,12 +148,10 @@ def quiet(function: Function) -> Function:
 
 
 def _columns(ctx: click.Context, param: click.Parameter, value: str) -> list[str]:
-    names = {name: column.key for column in tables.COLUMNS.values() for name in (column.header, column.key)}
-    keys = [key.strip() for key in value.split(",") if key.strip()]
-    for key in keys:
-        if key not in names:
-            raise click.BadParameter(f"unknown column {key!r}; the columns are: {', '.join(tables.COLUMNS)}")
-    keys = [names[key] for key in keys]
+    try:
+        keys = [tables.key_of(name) for name in value.split(",") if name.strip()]
+    except ValueError as error:
+        raise click.BadParameter(str(error)) from error
     if not keys:
         raise click.BadParameter("name at least one column")
     return keys
