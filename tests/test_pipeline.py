@@ -102,8 +102,12 @@ def test_numbers_from_numpy() -> None:
         (2, {}, "n = 2 is too small; 3 vertices for each component make 3"),
         (40, {"speed": 1}, "unknown setting 'speed'; the settings are: c_1, "),
         (40, {"c_1": 0.7}, "c_1 = 0.7 is out of range"),
-        (40, {"c_1": math.nan}, "not JSON compliant"),
-        (40, {"anneal_sweeps": -1}, "expected u32"),
+        (40, {"c_1": math.nan}, "c_1 = nan is not a finite number"),
+        (40, {"c_1": "0.5"}, "c_1 = '0.5' is not a finite number"),
+        (40, {"c_1": 10**400}, "is not a finite number"),
+        (40, {"anneal_sweeps": -1}, "anneal_sweeps = -1 is not a whole number from 0 to 4294967295"),
+        (40, {"anneal_sweeps": 1e3}, "anneal_sweeps = 1000.0 is not a whole number"),
+        (40, {"anneal_sweeps": True}, "anneal_sweeps = True is not a whole number"),
     ],
 )
 def test_wrong_values(n: int, settings: dict[str, Any], message: str) -> None:

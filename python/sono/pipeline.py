@@ -9,6 +9,7 @@ second; between slices a caller may show progress, save or stop.
 
 import json
 import math
+import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -89,13 +90,24 @@ def default_settings() -> dict[str, Any]:
 
 
 def check_settings(settings: dict[str, Any]) -> None:
-    """Raise `ValueError` for an unknown setting or a value out of its range."""
-    unknown = settings.keys() - default_settings().keys()
-    if unknown:
-        known = ", ".join(default_settings())
-        raise ValueError(f"unknown setting {min(unknown)!r}; the settings are: {known}")
-    # The core checks the values when a stage begins, which on a triangle costs nothing.
-    Tightener([np.eye(3)], "settle", 60, json.dumps(settings, allow_nan=False))
+    """Raise `ValueError` for an unknown setting or a value that is of no use."""
+    defaults = default_settings()
+    for name, value in settings.items():
+        if name not in defaults:
+            raise ValueError(f"unknown setting {name!r}; the settings are: {', '.join(defaults)}")
+        most = None if isinstance(defaults[name], float) else 2**64 - 1 if name == "seed" else 2**32 - 1
+        if not _is_number(value, most):
+            kind = "a finite number" if most is None else f"a whole number from 0 to {most}"
+            raise ValueError(f"setting {name} = {value!r} is not {kind}")
+    # The core checks the ranges when a stage begins, which on a triangle costs nothing.
+    Tightener([np.eye(3)], "settle", 60, json.dumps(settings))
+
+
+def _is_number(value: object, most: int | None) -> bool:
+    """Tell whether this is a finite number, or a whole one up to `most`."""
+    if most is None:
+        return isinstance(value, int | float) and abs(value) <= sys.float_info.max
+    return isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= most
 
 
 def measure(vertices: ArrayLike | Sequence[ArrayLike]) -> Measures:
