@@ -20,8 +20,8 @@ def race(method: Method) -> tuple[float, float | None]:
     reached: list[tuple[float, float]] = []
 
     def watch(progress: Progress) -> None:
-        best = progress.status.best
-        if best.n == 480 and best.l_p <= GOAL:
+        best = progress.status and progress.status.best
+        if best and best.n == 480 and best.l_p <= GOAL:
             reached.append((time.perf_counter() - start, best.l_p))
             raise Stopped
 

@@ -61,7 +61,7 @@ def spawn(folder: Path) -> Iterator[Spawn]:
 
         pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         process = subprocess.Popen(
-            [sys.executable, "-c", "from sono.cli import main; main(prog_name='sono')", *arguments],
+            [sys.executable, "-c", "from sono.cli import run; run()", *arguments],
             text=True,
             preexec_fn=prepare if os.name == "posix" else None,
             **(pipes | more),

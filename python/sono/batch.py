@@ -16,7 +16,7 @@ from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
-from sono import contacts, formats, sources
+from sono import checkpoints, contacts, formats, sources
 from sono._core import CurveError, Measures, PanicError
 from sono.formats import FormatError, VertexFile, is_stream
 from sono.pipeline import (
@@ -33,6 +33,9 @@ from sono.pipeline import (
 )
 from sono.tables import Row, printable
 from sono.workers import Workers
+
+KIND = "tightening"
+"""What checkpoints of this module call themselves."""
 
 SAVE_EVERY = 10.0
 """Seconds between two checkpoints."""
@@ -218,6 +221,9 @@ def _named(result: "Result", names: dict[str, str]) -> "Result":
 
 def _told(show: Callable[[float, str], None], progress: Progress) -> None:
     status = progress.status
+    if status is None:
+        show(0, f"{progress.stage} n {progress.n}/{progress.target}")
+        return
     trial = f"trial {progress.trial} " if progress.stage in ("collapse", "anneal", "trial") else ""
     what = f"{trial}{progress.stage} n {progress.n}/{progress.target} L_p {status.best.l_p:.5f}"
     show(status.progress, what)
@@ -299,12 +305,12 @@ class _Task:
             self.job.checkpoint.unlink(missing_ok=True)
 
     def look(self, watch: Callable[[Progress], None], progress: Progress) -> None:
-        """Between two slices: show, stop or save the run."""
+        """Between two slices, or while one takes longer: show, stop or save the run."""
         watch(progress)
         now = time.monotonic()
         if now > self.end:
             raise Stopped(f"the time limit of {self.job.time_limit:g} s was reached")
-        if now > self.saved + SAVE_EVERY:
+        if now > self.saved + SAVE_EVERY and self.run.at_rest:
             with suppress(FormatError):  # a full disk may have room again before the run is stopped
                 self.save()
 
@@ -352,7 +358,8 @@ class _Task:
         measures, unwritten = tight.measures, None
         try:
             formats.write(output, tight.curve, _header(self.job, tight, status))
-            if not is_stream(output):
+            # The file has every digit; reading it again would only make a stop wait.
+            if not is_stream(output) and status != STOPPED:
                 measures = measured(output)[1]
         except FormatError as error:
             unwritten = str(error)
@@ -374,13 +381,13 @@ class _Task:
         path = self.job.checkpoint
         if not (self.job.resume and path and path.exists()):
             return None
+        state = checkpoints.load(path, KIND)
         try:
-            state = json.loads(path.read_text(encoding="utf-8"))
             same = state.pop("identity") == self.identity
             failed = {int(n): str(trouble) for n, trouble in state.pop("failed").items()}
             run = Run.restore(state) if same else None
-        except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-            raise FormatError(f"{path}: is no checkpoint ({error}); remove it") from error
+        except (ValueError, LookupError, TypeError, AttributeError, PanicError) as error:
+            raise FormatError(f"{path}: holds no state of a run ({error}); remove it") from error
         if run is None:
             raise FormatError(f"{path}: is of another curve, n or setting; repeat those or remove it")
         # An output that was written and then lost has to be made from the beginning.
@@ -390,20 +397,17 @@ class _Task:
         return run
 
     def save(self) -> None:
-        """Write the checkpoint, if there is to be one."""
+        """Write the checkpoint, if there is to be one. Raises `FormatError`."""
         self.saved = time.monotonic()
         if self.job.checkpoint:
-            try:
-                with formats.atomic_text(self.job.checkpoint) as stream:
-                    json.dump(self.run.state() | {"identity": self.identity, "failed": self.failed}, stream)
-            except OSError as error:
-                why = error.strerror or error
-                raise FormatError(f"{self.job.checkpoint}: cannot be written: {why}") from error
+            state = self.run.state() | {"identity": self.identity, "failed": self.failed}
+            checkpoints.save(self.job.checkpoint, KIND, state)
 
     def way_on(self) -> str:
         """Save a run that ends early; return what to add to the message about it."""
         try:
-            self.save()
+            if self.run.at_rest:  # otherwise the last checkpoint is what there is
+                self.save()
         except FormatError as error:
             return f"; {error}"
         return "; --resume goes on from here" if self.job.checkpoint else ""

@@ -4,7 +4,7 @@ A `Run` first finds a shape: SONO collapses the curve and anneals it on so few b
 freely, and the polish makes the result exact; several such trials compete. From the best shape the run climbs
 to each n asked for, refining the inscribed knot to twice the vertices and polishing it. With the method
 "sono" there is one trial, and SONO does all the rest too. Rust does the work in slices of a tenth of a
-second; between slices a caller may show progress, save or stop.
+second; between slices, and while one takes longer, a caller may show progress or stop.
 """
 
 import json
@@ -13,21 +13,26 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from operator import index
-from typing import Any, Literal, Self, cast, get_args
+from typing import Any, Literal, Self, TypeVar, cast, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
 from sono._core import Collapse, CurveError, Measures, PanicError, Polish, PolishStatus, Status, Tightener
+from sono.checkpoints import packed, unpacked
 from sono.invariants import Curve, Fingerprint, TooEntangledError, fingerprint
+from sono.patience import patiently
 
 Method = Literal["both", "sono", "polish"]
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 Rung = tuple[Stage, int]
 Engine = Collapse | Tightener | Polish
+Seen = tuple[Status | PolishStatus, Curve]
+Done = TypeVar("Done")
 
 SLICE = 0.1
 """Seconds between two looks at the run."""
@@ -53,6 +58,15 @@ OFFSETS = 3
 OFFSETS_TO = 1000
 """Offsets along the rope from which the last n is refined, up to this n: beads settle in other grooves each
 time, which matters less the finer they are. Above it the others are tried where one did not get tight."""
+
+MOST = 1_000_000
+"""The largest n; the polish then takes some 3 GB."""
+
+MOMENT = 0.3
+"""Seconds in which the type of a stopped rope is compared, which up to 60,000 vertices suffices."""
+
+FINER = 4
+"""A state in which a run was stopped has at most so many times the vertices that were asked for."""
 
 HOT = 0.5
 """Violation tolerated at the start of every other trial's anneal; it crosses higher barriers."""
@@ -195,7 +209,8 @@ class Tight:
     Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
     those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
     constraint's multiplier and slack, and `excess`, the sum of these products, tells by how much a converged
-    rope is longer than the local minimum. Otherwise these are None.
+    rope is longer than the local minimum. Otherwise these are None. No forces are fitted to a rope that was
+    stopped.
     """
 
     curve: Curve
@@ -217,19 +232,20 @@ class Tight:
 class Progress:
     """Where a run stands: the rung it is on (`stage`, `n`), the n it climbs to, and the core's status.
 
-    `trial` counts the trials, this one included, from 1.
+    `status` is None as long as the rung is only just beginning. `trial` counts the trials, this one included,
+    from 1.
     """
 
     stage: Stage
     n: int
     target: int
     trial: int
-    status: Status | PolishStatus
+    status: Status | PolishStatus | None
 
 
 @dataclass
 class Run:
-    """A tightening that can be stopped, saved and resumed at any slice.
+    """A tightening that can be stopped at any time, and saved and resumed at any slice.
 
     `curve` is any embedded closed curve at any scale; `targets` are the numbers of vertices still wanted, all
     components together, in increasing order. Raises `ValueError` for a wrong target, method or setting.
@@ -257,6 +273,10 @@ class Run:
     def __post_init__(self) -> None:
         """Refuse what no run could do, before anything is computed."""
         self.targets = sorted(set(self.targets))
+        self.busy = False
+        self.seen: Seen | None = None
+        if self.targets and self.targets[-1] > MOST:
+            raise ValueError(f"n = {self.targets[-1]} is too large; {MOST} vertices are the most")
         least = 3 * len(self.curve)
         if self.targets and self.targets[0] < least:
             raise ValueError(
@@ -274,23 +294,24 @@ class Run:
             self.rungs = self._climb_to_target() if self.method == "polish" else [("collapse", 0)]
 
     def tighten(self, watch: Callable[[Progress], None] = lambda _: None) -> Tight:
-        """Tighten at the first target; `watch` is called between slices and rungs and may raise `Stopped`.
+        """Tighten at the first target; `watch` is called five times a second or more and may raise `Stopped`.
 
         Called once more it gives the same again. A trial that fails is only one trial less. Raises
         `CurveError` for a curve that cannot be tightened, or not with so few vertices, and `KnotTypeError`.
         """
+        look = partial(self._look, watch)
         if self.type is None:
             with suppress(TooEntangledError):  # the collapsed rope is less so, as a rule
-                self.type = fingerprint(self.curve)
+                self.type = patiently(partial(fingerprint, self.curve), look)
         while True:
             try:
-                self._climb(watch)
-                self._check_type()
+                self._climb(look)
+                self._check_type(look)
             except _FAILURES as error:
                 self._fail(error)
                 continue
             if self._is_last():
-                return self._tight(self._better())
+                return self._ended(self._better(), look)
             if self.rungs == [("polish", self.targets[0])]:
                 self.rival, self.worker = cast("Polish", self._better()), None
                 self.offset += 1
@@ -317,29 +338,54 @@ class Run:
             self.curve, self.failed, self.rungs = self.start, [], [("collapse", 0)]
 
     def best(self) -> Tight:
-        """Return the best state as `tighten` was stopped, as unconverged as it is."""
-        tight = replace(self._tight(self.rival or self.worker), converged=False)
-        if self.method != "both" or self.shape is None or self.rungs[0][0] in ("climb", "polish"):
-            return tight
-        # In the middle of another trial the best shape so far is better.
-        return replace(tight, curve=self.shape, measures=_core.measure(self.shape))
+        """Return the best state as `tighten` was stopped, as unconverged as it is, without forces.
+
+        Where the worker is busy still, this is how it was last seen; before any was, the curve as given.
+        """
+        if self.worker and not self.busy:
+            self.seen = _as_seen(self.worker)
+        status, curve = (self.rival and _as_seen(self.rival)) or self.seen or (None, self.curve)
+        if self.method == "both" and self.shape and self.rungs[0][0] not in ("climb", "polish"):
+            curve = self.shape  # In the middle of another trial the best shape so far is better.
+        elif not self._has_type(curve):
+            curve = self.curve
+        curve, measures = _unit(_coarser(curve, self.targets[0]))
+        return replace(self._tight(status, curve, measures), converged=False)
+
+    def _has_type(self, curve: Curve) -> bool:
+        """Tell whether a curve has the type of the one that was given, as far as a moment suffices."""
+        end = time.monotonic() + MOMENT
+
+        def look() -> None:
+            if time.monotonic() > end:
+                raise _TimeIsUp
+
+        try:
+            return self.type is None or patiently(partial(fingerprint, curve), look) == self.type
+        except (_TimeIsUp, TooEntangledError):
+            return True
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether nobody is at work on the run, so that its `state` can be taken."""
+        return self.worker is None or not self.busy
 
     def state(self) -> dict[str, Any]:
         """Return all that is needed to go on later, for JSON; `Run.restore` is its inverse."""
-        lists = {
-            name: curve and [component.tolist() for component in curve]
-            for name, curve in (("curve", self.curve), ("start", self.start), ("shape", self.shape))
-        }
+        curves = {name: packed(getattr(self, name)) for name in ("curve", "start", "shape")}
         engines = {
             "worker": self.worker and [type(self.worker).__name__, self.worker.state()],
             "rival": self.rival and self.rival.state(),
         }
-        return {**vars(self), **lists, **engines}
+        return {own.name: getattr(self, own.name) for own in fields(self)} | curves | engines
 
     @classmethod
     def restore(cls, state: dict[str, Any]) -> Self:
-        """Return the run that gave this state; it goes on as if it had never stopped."""
-        curves = {name: state[name] and as_curve(state[name]) for name in ("curve", "start", "shape")}
+        """Return the run that gave this state; it goes on as if it had never stopped.
+
+        Raises an error of any kind for what is no state.
+        """
+        curves = {name: unpacked(state[name]) for name in ("curve", "start", "shape")}
         rungs = [(stage, n) for stage, n in state["rungs"]]
         rival = state["rival"] and Polish.restore(state["rival"])
         type = state["type"] and tuple(map(tuple, state["type"]))
@@ -349,29 +395,45 @@ class Run:
             run.worker = _ENGINES[engine].restore(worker)
         return run
 
-    def _climb(self, watch: Callable[[Progress], None]) -> None:
+    def _climb(self, look: Callable[[], None]) -> None:
         """Run the first rung to its end."""
-        stage, n = self.rungs[0]
-
-        def look(status: Status | PolishStatus) -> None:
-            watch(Progress(stage, n or status.best.n, self.targets[0], self._trials_done() + 1, status))
-
         if self.worker is None:
-            self.worker = self._engine(stage, n)
-            # Here too, since many a rung takes less than a slice.
-            look(self.worker.status())
+            self.seen = None
+            self.worker = self._busily(partial(self._engine, *self.rungs[0]), look)
+            self.seen = _as_seen(self.worker)
+            look()  # here too, since many a rung takes less than a slice
         while True:
             start = time.perf_counter()
-            status = self.worker.advance(SLICE)
+            status, curve = self._busily(partial(_advanced, self.worker), look)
             self.seconds += time.perf_counter() - start
             if status.outcome != "running":
                 return
-            look(status)
+            self.seen = status, curve
+            look()
 
-    def _check_type(self) -> None:
+    def _busily(self, call: Callable[[], Done], look: Callable[[], None]) -> Done:
+        """Have the worker do what may take long."""
+
+        def work() -> Done:
+            try:
+                return call()
+            finally:
+                self.busy = False
+
+        self.busy = True
+        return patiently(work, look)
+
+    def _look(self, watch: Callable[[Progress], None]) -> None:
+        """Show where the run stands."""
+        stage, n = self.rungs[0]
+        status = self.seen and self.seen[0]
+        n = n or (status.best.n if status else sum(map(len, self.curve)))
+        watch(Progress(stage, n, self.targets[0], self._trials_done() + 1, status))
+
+    def _check_type(self, look: Callable[[], None]) -> None:
         """Compare what a rung has ended in with the curve that was given."""
         assert self.worker is not None
-        found = fingerprint(self.worker.best())
+        found = patiently(partial(fingerprint, self.worker.best()), look)
         self.type = self.type or found
         if found != self.type:
             stage, n = self.rungs[0]
@@ -420,7 +482,8 @@ class Run:
         """Take over what the first rung has reached, and plan the next ones if there are none."""
         if self.worker is None:
             return
-        tight = self._tight(self.worker)
+        status, curve = _as_seen(self.worker)
+        tight = self._tight(status, curve, status.best)
         self.curve, self.sweeps, self.factorisations = tight.curve, tight.sweeps, tight.factorisations
         if isinstance(self.worker, Collapse) and (loosened := self.worker.loosened()):
             self.start, self.loosened = loosened, True  # once for all trials
@@ -488,13 +551,11 @@ class Run:
         long = self.shapes and min(self.shapes) > LONG
         return bool(agree or long) and len(self.shapes) >= AGREEING
 
-    def _tight(self, worker: Engine | None) -> Tight:
-        assert worker is not None
-        status = worker.status()
+    def _tight(self, status: Status | PolishStatus | None, curve: Curve, measures: Measures) -> Tight:
         tight = Tight(
-            worker.best(),
-            status.best,
-            status.outcome == "tight",
+            curve,
+            measures,
+            status is not None and status.outcome == "tight",
             list(self.shapes),
             list(self.failed),
             self.loosened,
@@ -504,13 +565,23 @@ class Run:
         )
         if isinstance(status, Status):
             return replace(tight, sweeps=self.sweeps + status.sweeps)
-        tight = replace(tight, factorisations=self.factorisations + status.factorisations, mu=status.mu)
+        if isinstance(status, PolishStatus):
+            return replace(tight, factorisations=self.factorisations + status.factorisations, mu=status.mu)
+        return tight
+
+    def _ended(self, worker: Engine, look: Callable[[], None]) -> Tight:
+        """Return what the last rung has ended in, with the forces in it."""
+        status, curve = _as_seen(worker)
+        tight = self._tight(status, curve, status.best)
+        if not isinstance(worker, Polish):
+            return tight
         if not tight.converged:
             # The best state is not the last, to which the multipliers belong.
-            fitted = forces(tight.curve)
+            fitted = patiently(partial(forces, curve), look)
             return replace(tight, residual=fitted.residual, forces=fitted)
-        own = Forces(*cast("Polish", worker).forces())
-        return replace(tight, residual=status.residual, excess=status.excess, forces=own)
+        found = worker.status()
+        own = Forces(*worker.forces())
+        return replace(tight, residual=found.residual, excess=found.excess, forces=own)
 
     def _anneal(self) -> list[Rung]:
         """Plan SONO's rungs from the collapsed rope to the next target."""
@@ -539,6 +610,35 @@ _CLIMB: dict[Method, tuple[Stage, Stage]] = {
     "polish": ("climb", "polish"),
     "sono": ("settle", "settle"),
 }
+
+
+def _as_seen(worker: Engine) -> Seen:
+    return worker.status(), worker.best()
+
+
+def _advanced(worker: Engine) -> Seen:
+    return worker.advance(SLICE), worker.best()
+
+
+def _unit(curve: Curve) -> tuple[Curve, Measures]:
+    """Return a curve scaled to R_s = 1, and what it measures."""
+    measures = _core.measure(curve)
+    if abs(measures.r_s - 1) < 1e-9:
+        return curve, measures
+    curve = [component / measures.r_s for component in curve]
+    return curve, _core.measure(curve)
+
+
+def _coarser(curve: Curve, n: int) -> Curve:
+    """Return a rope, with fewer vertices where it has far more than n; the knot stays the same."""
+    if sum(map(len, curve)) <= FINER * n:
+        return curve
+    needed = max(n, math.ceil(_core.measure(curve).l_p / FINE))
+    if needed <= FINER * n:
+        coarse = _core.refine(curve, needed)
+        if fingerprint(coarse) == fingerprint(curve):
+            return coarse
+    return _core.simplify(curve)
 
 
 def _rank(polish: Polish) -> tuple[bool, float]:

@@ -115,6 +115,8 @@ pub struct Polish {
     restarts: u32,
     outcome: Outcome,
     best: Curve,
+    /// Its thickness R_s and L_p.
+    thickness: f64,
     shortest: f64,
 }
 
@@ -146,6 +148,7 @@ impl Polish {
         }
         curve.centre();
         let dl = curve.length() / n as f64;
+        let measured = measure(&curve);
         let last_mu = if passing { LAST_MU.max(PASSING_MU * dl.powi(3)) } else { LAST_MU };
         let mut polish = Self {
             least: first_least(&curve, &longest(&curve)),
@@ -162,7 +165,8 @@ impl Polish {
             excess: f64::MAX,
             restarts: 0,
             outcome: Outcome::Running,
-            shortest: measure(&curve).l_p,
+            thickness: measured.r_s,
+            shortest: measured.l_p,
             best: curve.clone(),
             curve,
         };
@@ -224,6 +228,7 @@ impl Polish {
     /// Ends with the rope as it is, though one before may have been shorter in the last digit.
     fn end(&mut self, outcome: Outcome) {
         self.best.clone_from(&self.curve);
+        self.thickness = measure(&self.best).r_s;
         self.outcome = outcome;
     }
 
@@ -340,9 +345,9 @@ impl Polish {
         self.newton.learn(a);
         let thinnest = 0.01 * self.l.iter().copied().fold(f64::MAX, f64::min).powi(2);
         self.way = (4. * a * longest).clamp(thinnest.min(LONGEST_WAY), LONGEST_WAY);
-        let l_p = measure(&self.curve).l_p;
+        let Measures { l_p, r_s, .. } = measure(&self.curve);
         if l_p < self.shortest {
-            self.shortest = l_p;
+            (self.shortest, self.thickness) = (l_p, r_s);
             self.best.clone_from(&self.curve);
         }
         true
@@ -350,7 +355,7 @@ impl Polish {
 
     /// The best state so far, its R_s = 1, its centre at the origin.
     pub fn best(&self) -> Curve {
-        scaled(&self.best, measure(&self.best).r_s)
+        scaled(&self.best, self.thickness)
     }
 
     /// The forces in the rope as it is.

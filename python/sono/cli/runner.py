@@ -1,8 +1,10 @@
 """What `sono tighten`, `sono search` and `sono atlas` share: jobs done side by side, their rows, Ctrl-C."""
 
+import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
@@ -16,6 +18,12 @@ if TYPE_CHECKING:
     from rich.progress import TaskID
 
     from sono.batch import Result
+
+SIGNALS = [number for name in ("SIGINT", "SIGTERM", "SIGHUP") if (number := getattr(signal, name, None))]
+"""Ctrl-C, what batch systems send, and the end of the terminal."""
+
+ECHO = 0.3
+"""Seconds in which a signal is taken for the first one again: wrappers pass on what a terminal sends all."""
 
 Show = Callable[[float, str], None]
 """Takes how far a job is, from 0 to 1, and what it does; it may raise `Stopped`."""
@@ -105,14 +113,20 @@ class Batch:
 
     @contextmanager
     def signals_caught(self) -> Iterator[None]:
-        """Let Ctrl-C and SIGTERM, which batch systems send, stop the jobs, each at its next slice."""
+        """Let a signal stop the jobs, which takes a second or two; another one ends all at once."""
+        first = 0.0
 
         def stop(number: int, frame: Any) -> None:
-            self.stop, self.signal = "interrupted", number
+            nonlocal first
+            if not self.signal:
+                first = time.monotonic()
+                self.stop, self.signal = "interrupted", number
+            elif time.monotonic() > first + ECHO:
+                _leave_at_once(number)
 
         before = {
             number: signal.signal(number, stop)
-            for number in (signal.SIGINT, signal.SIGTERM)
+            for number in SIGNALS
             if signal.getsignal(number) != signal.SIG_IGN  # as a script has it for its background jobs
         }
         try:
@@ -133,6 +147,13 @@ def _guarded(job: Job, show: Show) -> "Iterator[Result]":
     except Exception as error:
         kind = type(error).__name__
         yield Result(None, f"{job.name}: unexpected {kind}: {error}; please report it if sono is to blame")
+
+
+def _leave_at_once(number: int) -> None:
+    """End by a signal without another word, but show the cursor, which the bar hides."""
+    if sys.stderr.isatty():
+        os.write(sys.stderr.fileno(), b"\x1b[?25h\n")
+    os._exit(128 + number)
 
 
 def _wait(futures: "list[Future[None]]") -> None:
