@@ -100,7 +100,7 @@ def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -
     stages = set()
 
     def look(progress: Progress) -> None:
-        stages.add(json.loads(Path("knot.json").read_text())["rungs"][0][0])
+        stages.add(json.loads(Path("knot.json").read_text())["state"]["rungs"][0][0])
 
     list(batch.run(job, look))
     assert {"collapse", "anneal", "trial", "polish"} <= stages
