@@ -126,7 +126,7 @@ def test_standard_input_and_output(folder: Path, sono: Sono) -> None:
     result = sono("search", "-", "--trials", "1", "-o", "-", input=(folder / "3_1.txt").read_text())
     assert result.exit_code == 0
     assert result.stdout.startswith("# stdin: ")
-    assert "L_a" in result.stderr
+    assert "\tl_a\t" in result.stderr
 
 
 @pytest.mark.parametrize(
