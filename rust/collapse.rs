@@ -67,6 +67,14 @@ impl Collapse {
         })
     }
 
+    /// Whether a restored state is one that can go on.
+    pub fn is_sound(&self) -> bool {
+        self.given.is_sound()
+            && self.loosened.as_ref().is_none_or(Curve::is_sound)
+            && [&self.direct, &self.loose].into_iter().flatten().all(Tightener::is_sound)
+            && (self.thin || self.direct.is_some())
+    }
+
     /// Works for about `budget`, unless done before.
     ///
     /// # Errors

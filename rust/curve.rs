@@ -63,6 +63,14 @@ impl Curve {
         Self { vertices: components.concat(), ends }
     }
 
+    /// Whether a restored curve is one: 3 vertices a component or more, all finite.
+    pub(crate) fn is_sound(&self) -> bool {
+        let starts = std::iter::once(&0).chain(&self.ends);
+        self.ends.last() == Some(&self.vertices.len())
+            && starts.zip(&self.ends).all(|(start, end)| start + 3 <= *end)
+            && self.vertices.iter().all(|v| v.is_finite())
+    }
+
     /// Number of vertices of all components together.
     pub fn n(&self) -> usize {
         self.vertices.len()

@@ -245,7 +245,7 @@ impl Walk<'_> {
                 point = self.point(&mut at, s);
                 let missing = chord - point.distance(self.points[self.points.len() - 1]);
                 s = (s + missing).clamp(from.0 + chord, from.0 + 3. * chord);
-                if missing.abs() <= 1e-15 * chord {
+                if missing.abs() <= f64::EPSILON * self.around {
                     break;
                 }
             }

@@ -9,6 +9,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use serde::de::DeserializeOwned;
 
 use crate::polish::Forces;
 use crate::{Curve, Error, Outcome, Stage, check_embedded};
@@ -299,9 +300,7 @@ impl Collapse {
 
     #[staticmethod]
     fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
-        released(py, || serde_json::from_str(state))?
-            .map(Self)
-            .map_err(|e| PyValueError::new_err(format!("not a state of a Collapse: {e}")))
+        restored(py, state, crate::Collapse::is_sound).map(Self)
     }
 }
 
@@ -350,9 +349,7 @@ impl Tightener {
 
     #[staticmethod]
     fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
-        released(py, || serde_json::from_str(state))?
-            .map(Self)
-            .map_err(|e| PyValueError::new_err(format!("not a state of a Tightener: {e}")))
+        restored(py, state, crate::Tightener::is_sound).map(Self)
     }
 }
 
@@ -427,9 +424,7 @@ impl Polish {
 
     #[staticmethod]
     fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
-        released(py, || serde_json::from_str(state))?
-            .map(Self)
-            .map_err(|e| PyValueError::new_err(format!("not a state of a Polish: {e}")))
+        restored(py, state, crate::Polish::is_sound).map(Self)
     }
 }
 
@@ -458,6 +453,19 @@ fn balance<'py>(py: Python<'py>, components: Arrays<'py>) -> PyResult<ForceArray
     let forces = released(py, || check_embedded(&curve).map(|()| crate::polish::balance(&curve)))?
         .map_err(to_python)?;
     force_arrays(py, forces)
+}
+
+/// What was saved by `state`, if it is a state that can go on.
+fn restored<T>(py: Python<'_>, state: &str, is_sound: fn(&T) -> bool) -> PyResult<T>
+where
+    T: DeserializeOwned + Send,
+{
+    let parsed = released(py, || match serde_json::from_str(state) {
+        Ok(engine) if is_sound(&engine) => Ok(engine),
+        Ok(_) => Err("its parts do not fit together".to_string()),
+        Err(error) => Err(error.to_string()),
+    })?;
+    parsed.map_err(|why| PyValueError::new_err(format!("not a state of an engine: {why}")))
 }
 
 fn name_of(outcome: Outcome) -> &'static str {

@@ -158,6 +158,19 @@ impl Rope {
         Ok(rope)
     }
 
+    /// Whether a restored rope is one: all beads there are, all numbers are finite.
+    pub(crate) fn is_sound(&self) -> bool {
+        let n = self.curve.n() as u32;
+        let Gap { beads, edge, bend } = self.gap;
+        self.curve.is_sound()
+            && self.dl.len() == self.curve.components()
+            && self.dl.iter().all(|dl| dl.is_finite() && *dl > 0.)
+            && self.pairs.iter().all(|&(i, j)| i < j && j < n)
+            && self.reference.len() == self.curve.n()
+            && self.reference.iter().all(|v| v.is_finite())
+            && [self.skin, beads, edge, bend].iter().all(|x| x.is_finite() && *x >= 0.)
+    }
+
     /// The curve as it is; its overlaps are those of the last sweep.
     pub fn curve(&self) -> &Curve {
         &self.curve

@@ -217,6 +217,16 @@ impl Tightener {
         tightener
     }
 
+    /// Whether a restored state is one that can go on.
+    pub fn is_sound(&self) -> bool {
+        self.settings.check().is_ok()
+            && self.rope.is_sound()
+            && self.best.curve.is_sound()
+            && self.planned > 0
+            && self.first_tolerance > 0.
+            && self.first_tolerance.is_finite()
+    }
+
     /// Works for about `budget`, unless done before.
     pub fn advance(&mut self, budget: Duration) -> Status {
         let start = Instant::now();

@@ -1,7 +1,6 @@
 """Jobs of a batch: rows as they come, checkpoints as they should be, disks full at the worst time."""
 
 import errno
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -11,10 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sono import batch, formats, library
+from sono import batch, checkpoints, formats, library
+from sono._core import PanicError
 from sono.batch import Job
 from sono.formats import FormatError
-from sono.pipeline import Progress, Stopped
+from sono.pipeline import Progress, Run, Stage, Stopped
 
 pytestmark = pytest.mark.usefixtures("slices")
 
@@ -77,6 +77,25 @@ def test_resumed_after_any_stage(job: Job, stage: str, target: int) -> None:
         assert Path(f"{n}.txt").read_bytes() == Path(f"whole{n}.txt").read_bytes()
 
 
+def test_a_failed_trial_is_not_forgotten(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
+    begin = Run._engine
+
+    def engine(self: Run, stage: Stage, n: int) -> Any:
+        if stage == "trial" and self.shapes:
+            raise PanicError("index out of bounds")
+        return begin(self, stage, n)
+
+    monkeypatch.setattr(Run, "_engine", engine)
+    job = replace(job, outputs={60: "60.txt"})
+    list(batch.run(job, StopAt("polish", 60)))
+    (result,) = batch.run(replace(job, resume=True), nothing)
+    assert result.row
+    assert (result.row["trials"], result.row["status"]) == (2, "tight")
+    assert result.note
+    assert "1 trials at n = 60" in result.note
+    assert "1 failed: index out of bounds" in result.note
+
+
 def test_killed_between_result_and_checkpoint(job: Job) -> None:
     next(batch.run(job, nothing))
     assert Path("knot.json").exists()
@@ -100,7 +119,7 @@ def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -
     stages = set()
 
     def look(progress: Progress) -> None:
-        stages.add(json.loads(Path("knot.json").read_text())["state"]["rungs"][0][0])
+        stages.add(checkpoints.load(Path("knot.json"), batch.KIND)["run"]["rungs"][0][0])
 
     list(batch.run(job, look))
     assert {"collapse", "anneal", "trial", "polish"} <= stages

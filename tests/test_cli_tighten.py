@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from conftest import QUICK, Sono, Spawn, vertices
 
-from sono import formats, measure, tables
+from sono import batch, checkpoints, formats, measure, tables
 from sono._core import PanicError
 from sono.cli import options
 from sono.pipeline import Run
@@ -320,12 +320,33 @@ class TestTimeLimit:
             )
             assert result.stderr == expected
 
-    @pytest.mark.parametrize("content", ["", "[]", "{}", '"x"', "\xff"])
-    def test_a_checkpoint_that_is_none(self, folder: Path, sono: Sono, content: str) -> None:
-        (folder / "3_1.checkpoint.json").write_text(content, encoding="latin-1")
-        result = sono("tighten", "3_1.txt", "-n", "60", *QUICK, "--checkpoint", ".", "--resume")
-        assert result.exit_code == 1
-        assert result.stderr.startswith("sono: 3_1.checkpoint.json: is no checkpoint, or an old")
+    def test_a_checkpoint_that_is_none_spoils_no_other_knot(self, folder: Path, sono: Sono) -> None:
+        line = ("tighten", "3_1.txt", "Hopf.txt", "-n", "60", *QUICK, "--checkpoint", ".")
+        sono(*line, *AT_ONCE)
+        path = folder / "3_1.checkpoint.json"
+        state = path.read_text()
+        for content, why in {
+            "": "is no checkpoint, or an old or damaged one; remove it",
+            state.replace('"trials": 1', '"trials": 2'): "is damaged; remove it",
+            state.replace(batch.KIND, "search"): "is no checkpoint of a tightening; remove it",
+        }.items():
+            path.write_text(content)
+            result = sono(*line, "--resume")
+            assert result.exit_code == 1
+            assert result.stderr == f"sono: 3_1.checkpoint.json: {why}\n"
+            assert result.stdout.splitlines()[1].startswith("Hopf\t60\t")
+
+    def test_a_checkpoint_of_nonsense(self, folder: Path, sono: Sono) -> None:
+        line = ("tighten", "3_1.txt", "-n", "60", *QUICK, "--checkpoint", ".")
+        sono(*line, *AT_ONCE)
+        path = folder / "3_1.checkpoint.json"
+        state = checkpoints.load(path, batch.KIND)
+        wrong = {"curve": ["AAAA"], "rungs": [3], "worker": ["Polish", "{}"], "targets": None, "more": 1}
+        for key, value in wrong.items():
+            checkpoints.save(path, batch.KIND, state | {"run": state["run"] | {key: value}})
+            result = sono(*line, "--resume")
+            assert result.exit_code == 1
+            assert result.stderr.startswith("sono: 3_1.checkpoint.json: holds no state of a run (")
 
 
 def test_resume_keeps_what_is_there(folder: Path, sono: Sono) -> None:

@@ -1,11 +1,15 @@
 """The compiled module: that the stubs say what it has, and that the interpreter is free while it works."""
 
 import json
+import random
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from functools import reduce
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -79,8 +83,45 @@ def test_state_is_all_there_is() -> None:
 
 @pytest.mark.parametrize("state", ["", "{}", "[1]", "null"])
 def test_a_state_that_is_none(state: str) -> None:
-    with pytest.raises(ValueError, match="not a state of a Tightener"):
-        _core.Tightener.restore(state)
+    for engine in (_core.Collapse, _core.Tightener, _core.Polish):
+        with pytest.raises(ValueError, match="not a state of an engine"):
+            engine.restore(state)
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where the values in nested lists and dictionaries are."""
+    if path:
+        yield path
+    for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+        if isinstance(inner, dict | list):
+            yield from places(inner, (*path, key))
+        else:
+            yield (*path, key)
+
+
+def test_a_damaged_state_is_refused_or_goes_on() -> None:
+    rope = library.start("Hopf")
+    engines = (_core.Collapse(rope, False, "{}"), tightener(), _core.Polish(rope, 96, False, 0))
+    draw, refused = random.Random(7), 0
+    for engine in engines:
+        engine.advance(1e-3)
+        whole = json.loads(engine.state())
+        everywhere = list(places(whole))
+        for _ in range(200):
+            state = json.loads(json.dumps(whole))
+            *path, last = draw.choice(everywhere if draw.random() < 0.5 else everywhere[:40])
+            value = reduce(lambda value, key: value[key], path, state)
+            new = draw.choice([0, -1, 1e9, 1e300, 2**31, 2**64 - 1, None, "x", [], value[last]])
+            value[last] = new[1:] if isinstance(new, list) else new
+            try:
+                again = type(engine).restore(json.dumps(state))
+            except ValueError:
+                refused += 1
+                continue
+            for _ in range(3):
+                again.advance(1e-3)
+            assert len(again.best()) == len(rope) or engine is engines[1]
+    assert refused > 200
 
 
 @pytest.mark.parametrize("seconds", [-1.0, float("nan"), float("inf"), 1e300])

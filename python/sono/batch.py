@@ -320,8 +320,11 @@ class _Task:
         return Result(None, trouble)
 
     def stopped(self, why: str) -> Result:
-        """Write the best state of the run."""
-        best = self.run.best()
+        """Write the best state of the run. Raises `FormatError` for a curve that is none."""
+        try:
+            best = self.run.best()
+        except CurveError as error:  # nobody had looked at it yet
+            raise _located(error, self.file) from error
         output = free_name(self.job.outputs[self.run.targets[0]])
         row, unwritten = self.deliver_to(output, best, STOPPED)
         place = unwritten or f"the best state so far, n = {best.measures.n}, is in {output}"
@@ -383,9 +386,9 @@ class _Task:
             return None
         state = checkpoints.load(path, KIND)
         try:
-            same = state.pop("identity") == self.identity
-            failed = {int(n): str(trouble) for n, trouble in state.pop("failed").items()}
-            run = Run.restore(state) if same else None
+            same = state["identity"] == self.identity
+            failed = {int(n): str(trouble) for n, trouble in state["failed"].items()}
+            run = Run.restore(state["run"]) if same else None
         except (ValueError, LookupError, TypeError, AttributeError, PanicError) as error:
             raise FormatError(f"{path}: holds no state of a run ({error}); remove it") from error
         if run is None:
@@ -400,7 +403,7 @@ class _Task:
         """Write the checkpoint, if there is to be one. Raises `FormatError`."""
         self.saved = time.monotonic()
         if self.job.checkpoint:
-            state = self.run.state() | {"identity": self.identity, "failed": self.failed}
+            state = {"identity": self.identity, "failed": self.failed, "run": self.run.state()}
             checkpoints.save(self.job.checkpoint, KIND, state)
 
     def way_on(self) -> str:

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 Result = TypeVar("Result")
 
-LOOK = 0.2
+LOOK = 0.1
 """Seconds between two looks while waiting."""
 
 GRACE = 0.2

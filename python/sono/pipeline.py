@@ -59,11 +59,12 @@ OFFSETS_TO = 1000
 """Offsets along the rope from which the last n is refined, up to this n: beads settle in other grooves each
 time, which matters less the finer they are. Above it the others are tried where one did not get tight."""
 
-MOST = 1_000_000
-"""The largest n; the polish then takes some 3 GB."""
+MOST = 500_000
+"""The largest n; the polish then takes 1 GB or more."""
 
+COMPARED = 60_000
 MOMENT = 0.3
-"""Seconds in which the type of a stopped rope is compared, which up to 60,000 vertices suffices."""
+"""The type of a stopped rope is compared if it has so few vertices, in so many seconds."""
 
 FINER = 4
 """A state in which a run was stopped has at most so many times the vertices that were asked for."""
@@ -276,7 +277,7 @@ class Run:
         self.busy = False
         self.seen: Seen | None = None
         if self.targets and self.targets[-1] > MOST:
-            raise ValueError(f"n = {self.targets[-1]} is too large; {MOST} vertices are the most")
+            raise ValueError(f"n = {self.targets[-1]} is too large; {MOST:,} vertices are the most")
         least = 3 * len(self.curve)
         if self.targets and self.targets[0] < least:
             raise ValueError(
@@ -354,6 +355,8 @@ class Run:
 
     def _has_type(self, curve: Curve) -> bool:
         """Tell whether a curve has the type of the one that was given, as far as a moment suffices."""
+        if self.type is None or sum(map(len, curve)) > COMPARED:
+            return True
         end = time.monotonic() + MOMENT
 
         def look() -> None:
@@ -361,7 +364,7 @@ class Run:
                 raise _TimeIsUp
 
         try:
-            return self.type is None or patiently(partial(fingerprint, curve), look) == self.type
+            return patiently(partial(fingerprint, curve), look) == self.type
         except (_TimeIsUp, TooEntangledError):
             return True
 

@@ -185,6 +185,23 @@ impl Polish {
         (self.curve, self.mu, self.first_mu) = (curve, mu, mu);
     }
 
+    /// Whether a restored state is one that can go on.
+    pub fn is_sound(&self) -> bool {
+        let (n, components) = (self.curve.n(), self.curve.components());
+        let positive = |x: &f64| x.is_finite() && *x > 0.;
+        let contacts = self.contacts.iter().map(|c| (c.i, c.j));
+        self.curve.is_sound()
+            && self.best.is_sound()
+            && (self.best.n(), self.best.components()) == (n, components)
+            && (self.l.len(), self.least.len(), self.chain.len()) == (components, components, 2 * n)
+            && self.l.iter().all(positive)
+            && self.chain.iter().chain(self.contacts.iter().map(|c| &c.z)).all(|z| z.is_finite())
+            && contacts.clone().is_sorted_by(|a, b| a < b)
+            && contacts.clone().all(|(i, j)| i < j && (j as usize) < n)
+            && [self.mu, self.last_mu, self.first_mu, self.way, self.thickness].iter().all(positive)
+            && self.newton.is_sound(n)
+    }
+
     /// Works for about `budget`, unless done before.
     pub fn advance(&mut self, budget: Duration) -> Status {
         let start = Instant::now();

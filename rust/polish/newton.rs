@@ -42,6 +42,13 @@ pub struct Newton {
 }
 
 impl Newton {
+    /// Whether what was restored fits a rope of n beads.
+    pub fn is_sound(&self, n: usize) -> bool {
+        self.shift >= 0.
+            && self.matrix.pairs.is_sorted_by(|a, b| a < b)
+            && self.matrix.pairs.iter().all(|&(i, j)| i < j && (j as usize) < n)
+    }
+
     /// How many factorisations there have been.
     pub fn factorisations(&self) -> u64 {
         self.factorisations

@@ -20,12 +20,16 @@ if TYPE_CHECKING:
 
 def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int]:
     """Return numbers separated by commas in increasing order."""
+    from sono.pipeline import MOST
+
     try:
         numbers = sorted({int(number) for number in value.split(",")})
     except ValueError:
         raise click.BadParameter(f"{value!r}: give whole numbers such as 480 or 120,240,480") from None
     if numbers[0] < 3:
         raise click.BadParameter("a closed curve has at least 3 vertices")
+    if numbers[-1] > MOST:
+        raise click.BadParameter(f"{MOST:,} vertices are the most")
     return numbers
 
 
