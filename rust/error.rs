@@ -69,6 +69,14 @@ pub enum Error {
         /// The most that is tried.
         limit: usize,
     },
+    /// Fewer vertices than 3 for each component.
+    #[error("n = {n} is too small; 3 vertices for each component make {needed} at least")]
+    TooFew {
+        /// The number of vertices that was asked for.
+        n: usize,
+        /// The smallest number that will do.
+        needed: usize,
+    },
     /// Edges so long that even neighbouring beads would have to be 2 R apart: see
     /// [`crate::procedures::least_index_distance`].
     #[error(

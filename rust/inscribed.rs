@@ -113,10 +113,17 @@ pub fn share_out(n: usize, lengths: &[f64]) -> Vec<usize> {
 }
 
 /// K_P sampled with `n` vertices in all at equal chords: how a tight rope is refined or coarsened.
-pub fn refine(curve: &Curve, n: usize, shift: f64) -> Curve {
+///
+/// # Errors
+/// [`Error::TooFew`].
+pub fn refine(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
+    let needed = 3 * curve.components();
+    if n < needed {
+        return Err(Error::TooFew { n, needed });
+    }
     let inscribed = Inscribed::new(curve);
     let shares = share_out(n, &inscribed.lengths().collect::<Vec<_>>());
-    inscribed.sample(&shares, shift).0
+    Ok(inscribed.sample(&shares, shift).0)
 }
 
 /// Edge length of a loose rope, as a multiple of its radius.

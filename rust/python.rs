@@ -12,7 +12,7 @@ use pyo3::types::PyTuple;
 use serde::de::DeserializeOwned;
 
 use crate::polish::Forces;
-use crate::{Curve, Error, Outcome, Stage, check_embedded};
+use crate::{Curve, Error, Outcome, Settings, Stage, check_embedded};
 
 create_exception!(
     sono,
@@ -41,7 +41,7 @@ fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
 
 fn to_python(error: Error) -> PyErr {
     let needed = match error {
-        Error::TooCoarse { needed, .. } => Some(needed),
+        Error::TooFew { needed, .. } | Error::TooCoarse { needed, .. } => Some(needed),
         _ => None,
     };
     let places = match error {
@@ -57,6 +57,7 @@ fn to_python(error: Error) -> PyErr {
         Error::Empty
         | Error::TooThin { .. }
         | Error::TooEntangled { .. }
+        | Error::TooFew { .. }
         | Error::TooCoarse { .. } => vec![],
     };
     let raised = CurveError::new_err(error.to_string());
@@ -93,7 +94,7 @@ fn arrays<'py>(py: Python<'py>, curve: &Curve) -> PyResult<Vec<Bound<'py, PyArra
 
 /// What a curve measures, in its own unit; L_p, L_c and L_a are ropelengths, lengths over the radius.
 ///
-/// n vertices on so many components; dl the mean edge, dispersion the largest |dl/s_i - 1|; MinRad, SR
+/// n vertices on so many components; dl the mean edge, dispersion the largest |s_i/dl - 1|; MinRad, SR
 /// and R_s the thickness by curvature, by distance, and the smaller of both; R_c, L_c and L_a are None
 /// where the inscribed curve has no thickness of its own. Baranska, Pieranski, Rawdon, section 2.
 #[pyclass(frozen, get_all, module = "sono")]
@@ -162,7 +163,7 @@ fn refine<'py>(
     n: usize,
 ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
     let curve = curve(components)?;
-    let refined = released(py, || crate::refine(&curve, n, 0.25))?;
+    let refined = released(py, || crate::refine(&curve, n, 0.25))?.map_err(to_python)?;
     arrays(py, &refined)
 }
 
@@ -218,7 +219,7 @@ fn loosen<'py>(
 
 #[pyfunction]
 fn default_settings() -> String {
-    serde_json::to_string(&crate::Settings::default()).expect("plain numbers")
+    serde_json::to_string(&Settings::default()).expect("plain numbers")
 }
 
 #[pyclass(frozen, get_all, module = "sono._core")]
@@ -319,13 +320,17 @@ impl Tightener {
     ) -> PyResult<Self> {
         let curve = curve(components)?;
         let settings = settings_from_json(settings)?;
-        released(py, || match stage {
-            "anneal" => crate::Tightener::anneal(&curve, n, settings),
-            "reanneal" => crate::Tightener::reanneal(&curve, n, settings),
-            _ => crate::Tightener::settle(&curve, n, settings),
-        })?
-        .map(Self)
-        .map_err(to_python)
+        let begin: fn(&Curve, usize, Settings) -> crate::Result<_> = match stage {
+            "anneal" => crate::Tightener::anneal,
+            "reanneal" => crate::Tightener::reanneal,
+            "settle" => crate::Tightener::settle,
+            _ => {
+                let known = "anneal, reanneal, settle";
+                let message = format!("unknown stage '{stage}'; the stages are: {known}");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        released(py, || begin(&curve, n, settings))?.map(Self).map_err(to_python)
     }
 
     fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
@@ -480,7 +485,7 @@ fn budget(seconds: f64) -> PyResult<Duration> {
     Duration::try_from_secs_f64(seconds).map_err(|e| PyValueError::new_err(e.to_string()))
 }
 
-fn settings_from_json(settings: &str) -> PyResult<crate::Settings> {
+fn settings_from_json(settings: &str) -> PyResult<Settings> {
     serde_json::from_str(settings).map_err(|e| PyValueError::new_err(format!("settings: {e}")))
 }
 

@@ -140,11 +140,11 @@ impl Rope {
     /// vertex at random. Where it is `n` already, it is taken as it is.
     ///
     /// # Errors
-    /// [`Error::TooCoarse`].
+    /// [`Error::TooFew`], [`Error::TooCoarse`].
     pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Self> {
         let shift = Pcg64Mcg::seed_from_u64(seed).random();
         let same = curve.n() == n;
-        let mut resampled = if same { curve.clone() } else { refine(curve, n, shift) };
+        let mut resampled = if same { curve.clone() } else { refine(curve, n, shift)? };
         // On the rope as it was, too: longer edges would cut through its strands.
         resampled.scale(1. / measure(curve).r_s);
         let before = resampled.length() / n as f64;

@@ -317,7 +317,8 @@ impl Tightener {
         let slack = measure(curve).r_s > 1. + SLACK;
         if self.rope.dl() < TOO_FINE {
             let n = (self.rope.length() / LOOSE) as usize;
-            self.rope = Rope::new(refine(curve, n, 0.25));
+            // At least 12 for each component, which is no shorter than 2 pi.
+            self.rope = Rope::new(refine(curve, n, 0.25).expect("enough beads"));
         } else if slack {
             self.rope = Rope::new(curve.clone());
         } else if self.met.overlap.max(self.met.curvature) < LIGHT {

@@ -12,7 +12,7 @@ use sono::{Curve, Error, measure, refine};
 proptest! {
     #[test]
     fn chords_are_equal(n in 30usize..400, q in 2usize..8, shift in 0f64..1.) {
-        let sampled = refine(&torus(2., 2. * q as f64 + 1., 300), n.max(20 * q), shift);
+        let sampled = refine(&torus(2., 2. * q as f64 + 1., 300), n.max(20 * q), shift).unwrap();
         prop_assert!(measure(&sampled).dispersion < 1e-11);
     }
 

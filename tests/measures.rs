@@ -163,7 +163,7 @@ proptest! {
 
     #[test]
     fn equal_edges_give_the_papers_index_rule(n in 60usize..150, q in 1usize..4) {
-        let curve = sono::refine(&torus(2., (2 * q + 1) as f64, 400), n, 0.);
+        let curve = sono::refine(&torus(2., (2 * q + 1) as f64, 400), n, 0.).unwrap();
         let (min_rad, dl) = bends(&curve)[0];
         let least = (PI * min_rad / dl - 1.).ceil() as usize;
         let mut closest = f64::INFINITY;

@@ -148,3 +148,23 @@ def test_refine_gives_the_number_asked_for() -> None:
     fine = _core.refine(library.start("Hopf"), 200)
     assert sum(map(len, fine)) == 200
     assert _core.measure(fine).components == 2
+
+
+def test_too_few_vertices_to_refine_to() -> None:
+    hopf = library.start("Hopf")
+    for make in (
+        lambda: _core.refine(hopf, 4),
+        lambda: _core.Polish(hopf, 4, False, 0),
+        lambda: _core.Tightener(hopf, "anneal", 4, "{}"),
+    ):
+        with pytest.raises(
+            _core.CurveError, match=r"n = 4 is too small; 3 vertices for each .* make 6"
+        ) as caught:
+            make()
+        assert caught.value.needed == 6
+    assert [len(component) for component in _core.refine(hopf, 6)] == [3, 3]
+
+
+def test_an_unknown_stage() -> None:
+    with pytest.raises(ValueError, match="unknown stage 'setle'; the stages are: anneal, reanneal, settle"):
+        _core.Tightener(library.start("3_1"), "setle", 60, "{}")  # type: ignore[arg-type]

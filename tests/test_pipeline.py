@@ -96,6 +96,16 @@ def test_numbers_from_numpy() -> None:
         sono.tighten(sono.start("3_1"), 40.5)  # type: ignore[arg-type]
 
 
+def test_the_seed_may_be_among_the_settings() -> None:
+    curve = sono.start("3_1")
+    as_argument = sono.tighten(curve, 40, seed=5, settings=QUICK)
+    as_setting = sono.tighten(curve, 40, settings=QUICK | {"seed": 5})
+    assert np.array_equal(as_argument.curve, as_setting.curve)
+    assert not np.array_equal(as_argument.curve, sono.tighten(curve, 40, settings=QUICK).curve)
+    with pytest.raises(ValueError, match="the seed is given twice"):
+        sono.tighten(curve, 40, seed=5, settings={"seed": 5})
+
+
 @pytest.mark.parametrize(
     ("n", "settings", "message"),
     [

@@ -121,7 +121,7 @@ class Tightener:
     def __new__(
         cls,
         components: _Components,
-        stage: _Stage,
+        stage: Literal["anneal", "reanneal", "settle"],
         n: int,
         settings: str,
     ) -> Tightener: ...

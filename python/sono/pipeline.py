@@ -150,7 +150,7 @@ def tighten(
     *,
     method: Method = "both",
     trials: int = TRIALS,
-    seed: int = 0,
+    seed: int | None = None,
     time_limit: float | None = None,
     settings: dict[str, Any] | None = None,
     watch: "Callable[[Progress], None]" = lambda _: None,
@@ -159,12 +159,17 @@ def tighten(
 
     With the method "both" SONO finds shapes in up to `trials` trials and the polish makes the best one exact;
     "sono" and "polish" do without the other. After `time_limit` seconds the best state so far is returned,
-    with `converged` False. `settings` replaces some of `default_settings()`, which are SONO's. `watch` is
-    called about ten times a second; what it raises ends the run and passes through. Raises `CurveError` for a
-    curve that cannot be tightened (with so few vertices), `ValueError` for a wrong n, method or setting. A
-    rope of another knot type than the curve is never returned: `KnotTypeError`.
+    with `converged` False. `settings` replaces some of `default_settings()`, which are SONO's; the seed may
+    be given there instead. `watch` is called about ten times a second; what it raises ends the run and passes
+    through. Raises `CurveError` for a curve that cannot be tightened (with so few vertices), `ValueError` for
+    a wrong n, method or setting. A rope of another knot type than the curve is never returned:
+    `KnotTypeError`.
     """
-    settings = {**(settings or {}), "seed": index(seed)}
+    settings = settings or {}
+    if seed is not None:
+        if "seed" in settings:
+            raise ValueError("the seed is given twice, as an argument and in the settings")
+        settings = settings | {"seed": index(seed)}
     run = Run(as_curve(vertices), [index(n)], settings, method, index(trials))
     end = math.inf if time_limit is None else time.monotonic() + time_limit
 

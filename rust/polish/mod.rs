@@ -143,7 +143,7 @@ impl Polish {
         let l = longest(&curve);
         if chain_terms(&curve, &l).any(|t| t.g < -bound(&t, &l)) {
             // Edges too unequal for its own bends; equal ones lie on K_P.
-            curve = refine(&curve, n, 0.);
+            curve = refine(&curve, n, 0.)?;
             curve.scale(1. / measure(&curve).r_s);
         }
         curve.centre();
