@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import pytest
-from conftest import Sono
+from conftest import QUICK, Sono
 
-from sono import library, published, tables
+from sono import formats, library, published, tables
+
+ATLAS = Path(__file__).parent.parent / "knots" / "atlas.tsv"
 
 TABLE = "knot\tn\tL_a\tL_c\n8_4\t359\t71.45\t71.69\nm3_1\t164\t32.75\t32.7\nHopf\t60\t25.1\t-\n"
 
@@ -20,8 +22,9 @@ def test_the_differences_have_their_signs(folder: Path, sono: Sono) -> None:
     assert chiral["l_c_difference"] == pytest.approx(0.2196)
     assert mirrored["l_a_difference"] == pytest.approx(0.0064)
     assert link["published"] is None
-    counted, unknown = result.stderr.splitlines()
-    assert counted == "sono: of 2 rows L_a is at most the published value in 1, L_c in 1"
+    counted, coarse, unknown = result.stderr.splitlines()
+    assert coarse.endswith("the error of the limit exceeds the difference: 8_4")
+    assert counted == "sono: of 2 rows L_a is at most the published value in 1, L_c in 1, the limit in 1"
     assert unknown == "sono: of 1 rows no ropelength is published under the name they have"
 
 
@@ -35,7 +38,7 @@ def test_the_finer_level_counts_for_l_c(folder: Path, sono: Sono) -> None:
 def test_another_table_to_compare_with(folder: Path, sono: Sono) -> None:
     Path("mine.tsv").write_text("knot\tL_a\nHopf\t25.0\n")
     result = sono("compare", "-", "--published", "mine.tsv", input=TABLE)
-    assert "Hopf\t60\t25.1\t-\t25.0\tmine.tsv\t0.1" in result.stdout
+    assert "Hopf\t60\t25.1\t-\t-\t-\t25.0\tmine.tsv\t0.1" in result.stdout
     Path("mirror.tsv").write_text("knot\tL_a\nm3_1\t32.7\n")
     result = sono("compare", "mirror.tsv", "--published", "mirror.tsv", "-q", "--columns", "l_a_difference")
     assert result.stdout == "l_a_difference\n0.0\n"
@@ -91,3 +94,83 @@ def test_the_published_table_has_every_knot() -> None:
     assert {row["source"] for row in table.values()} == {"ACPR 2011", "KnotInfo 2026.11.2"}
     # Table 1 of Ashton, Cantarella, Piatek and Rawdon.
     assert [table[knot]["published"] for knot in ("3_1", "4_1", "8_18")] == [32.7436, 42.0887, 74.9063]
+
+
+def test_a_curve_of_another_type_than_its_name(folder: Path, sono: Sono) -> None:
+    formats.write("4_1.txt", library.start("5_2"))
+    formats.write("m3_1.txt", library.start("3_1"))  # whose mirror image is as long
+    formats.write("own.txt", library.start("5_2"))
+    columns = "knot,n,l_a,file"
+    table = sono("measure", "4_1.txt", "m3_1.txt", "3_1.txt", "own.txt", "--columns", columns).stdout
+    assert sono("compare", "-", "-q", input=table).stderr == ""
+    result = sono("compare", "-", input=table)
+    assert result.exit_code == 0
+    doubts = [line for line in result.stderr.splitlines() if "type" in line]
+    assert doubts == ["sono: 4_1: the curve in 4_1.txt is of another type than 4_1"]
+
+
+def test_a_record_that_is_none(folder: Path, sono: Sono) -> None:
+    library.start("3_1")
+    result = sono("compare", "-", input="knot\tl_a\n4_1\t32.7\n9_1\t75.3\n")
+    assert "sono: 4_1: is 22% shorter than published: is it of this type?" in result.stderr
+    assert "9_1" not in result.stderr
+
+
+def test_a_file_called_like_a_knot_is_told(folder: Path, sono: Sono) -> None:
+    formats.write("4_1", library.start("3_1"))
+    formats.write("stick", library.start("3_1"))
+    line = ("tighten", "4_1", "5_2", "stick", "./4_1", "-n", "60", "--force", "--columns", "knot,l_a", *QUICK)
+    result = sono(*line[:4], *line[5:])
+    assert 32 < float(result.stdout.split()[3]) < 33
+    note = "sono: 4_1: is a file here, which is taken, and not the knot of this name; `sono start 4_1`"
+    assert [text for text in result.stderr.splitlines() if "is a file here" in text] == [f"{note} draws that"]
+    assert "is a file here" not in sono("tighten", "./4_1", *line[5:]).stderr
+    assert note in sono("search", "4_1", "--trials", "1").stderr
+    assert "is a file here" not in sono("search", "4_1", "--trials", "1", "--force", "-q").stderr
+
+
+def test_the_limit_of_the_trefoil_is_within_its_error() -> None:
+    # L_p and L_c of the README's tables, and the best published estimate of the trefoil's ropelength.
+    for n, l_p, l_c in [
+        (120, 32.691005, 32.939913),
+        (240, 32.730395, 32.791877),
+        (480, 32.739828, 32.755154),
+        (960, 32.742168, 32.745995),
+        (3840, 32.74288674, 32.74312583),
+    ]:
+        row: tables.Row = {"knot": "3_1", "n": n, "l_a": (4 * l_p + l_c) / 5, "l_c": l_c}
+        once = published.extrapolated(row)
+        twice = published.extrapolated({**row, "n_fine": 7680, "l_c_fine": 32.74298246})
+        errors = [float(found["limit_error"] or 0) for found in (once, twice)]
+        for found, error in zip((once, twice), errors, strict=True):
+            assert abs(float(found["limit"] or 0) - 32.742934477) < error
+        assert n > 480 or errors[1] < 0.02 * errors[0]
+
+
+def test_one_level_estimates_what_two_levels_tell() -> None:
+    if not ATLAS.exists():
+        pytest.skip("needs the source tree")
+    rows = tables.read(str(ATLAS))
+    within = below = 0
+    for row in rows:
+        twice = published.extrapolated(row)
+        once = published.extrapolated({key: row[key] for key in ("knot", "n", "l_a", "l_c")})
+        limit, error = float(twice["limit"] or 0), float(once["limit_error"] or 0)
+        within += abs(float(once["limit"] or 0) - limit) <= error
+        below += float(row["l_a"] or 0) < limit
+        assert float(twice["limit_error"] or 0) < 0.05 * error
+    assert within >= 0.99 * len(rows)
+    assert below >= 0.85 * len(rows)
+
+
+def test_edges_too_coarse_to_tell(folder: Path, sono: Sono) -> None:
+    # 8_18 on edges of 0.37 and 0.04; 74.9063 is published.
+    coarse = "8_18\t200\t74.80304916\t75.68405809\n"
+    fine = "8_18.n1920\t1920\t74.90273390\t74.91199079\n"
+    result = sono("compare", "-", "--format", "jsonl", input=f"knot\tn\tl_a\tl_c\n{coarse}{fine}")
+    assert "sono: 1 rows have edges too coarse to tell which is shorter" in result.stderr
+    assert result.stderr.endswith("the difference: 8_18\n")
+    Path("rows").write_text(result.stdout)
+    first, second = tables.read("rows")
+    assert published.is_too_coarse(first)
+    assert not published.is_too_coarse(second)

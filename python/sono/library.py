@@ -71,6 +71,13 @@ def has_variants(name: str) -> bool:
     return plain in _knots() or _KNOTINFO.fullmatch(plain) is not None
 
 
+def knows(name: str) -> bool:
+    """Tell whether this looks like the name of a knot, without drawing it."""
+    plain = re.sub("^m", "", name.strip(), flags=re.IGNORECASE)
+    patterns = (_TORUS, _CHAIN, _BRAID, _KNOTINFO)
+    return plain.casefold() in map(str.casefold, names()) or any(p.fullmatch(plain) for p in patterns)
+
+
 def start(name: str, variant: int = 0) -> Curve:
     """Return a starting conformation of the knot called `name`, in units of about one rope radius.
 

@@ -7,11 +7,19 @@ import numpy as np
 from sono import formats, library
 from sono.formats import FormatError, VertexFile
 
+_OF_FILES = "./\\"
+"""What no name of a knot has."""
+
 
 def is_name(source: str) -> bool:
     """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
     is_file = os.path.exists(source) and not os.path.isdir(source)
-    return source != "-" and not is_file and not set("./\\") & set(source)
+    return source != "-" and not is_file and not set(_OF_FILES) & set(source)
+
+
+def shadowed(source: str) -> bool:
+    """Tell whether this is a file here that is called like a knot, which it takes the place of."""
+    return os.path.isfile(source) and not set(_OF_FILES) & set(source) and library.knows(source)
 
 
 def read(source: str) -> VertexFile:

@@ -79,6 +79,7 @@ def command(
     if not update and not Path(folder, "atlas.tsv").exists():
         raise click.UsageError(f"{folder}/atlas.tsv: no such file; --folder says where, --update makes one")
     names = sources or [row["knot"] for row in library.table("knots")]
+    options.tell_of_shadows(names, quiet)
     with options.workers(jobs, cluster) as workers:
         work = [
             _AtlasJob(

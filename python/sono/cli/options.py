@@ -79,6 +79,16 @@ def _listed(path: str) -> list[str]:
         raise click.UsageError(f"{path}: cannot be read: {error.strerror}") from error
 
 
+def tell_of_shadows(sources: Sequence[str], quiet: bool) -> None:
+    """Say which sources are files called like a knot."""
+    from sono.sources import shadowed  # here, since numpy would make --help wait
+
+    for source in sources if not quiet else []:
+        if shadowed(source):
+            why = "is a file here, which is taken, and not the knot of this name"
+            complain(f"{source}: {why}; `sono start {source}` draws that")
+
+
 def parallel(jobs_help: str) -> Callable[[Function], Function]:
     """`--jobs` and `--cluster`."""
 

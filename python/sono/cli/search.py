@@ -100,6 +100,7 @@ def command(
             for source, name, path in _plan(sources, output)
         ]
         options.prepare([path for job in work for path in job.files()], sources, not (force or resume))
+        options.tell_of_shadows(sources, quiet)
         table = options.table_beside(format_, columns, output == "-", quiet)
         sys.exit(Batch(table, quiet).run(work, workers.count))
 

@@ -147,6 +147,7 @@ def command(
     ]
     unfinished = (free_name(path) for job in work for path in job.outputs.values() if path != "-")
     options.prepare([path for job in work for path in job.files()], sources, fresh, unfinished)
+    options.tell_of_shadows(sources, quiet)
     table = options.table_beside(format_, columns, "-" in (output, contacts), quiet)
     with options.workers(jobs, cluster) as workers:
         sent = [job.sent_to(workers) for job in work] if cluster else work
