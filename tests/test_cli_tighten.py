@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from conftest import QUICK, Sono, Spawn, vertices
 
-from sono import batch, checkpoints, formats, measure, tables
+from sono import batch, checkpoints, formats, library, measure, tables
 from sono._core import PanicError
 from sono.cli import options
 from sono.pipeline import Run
@@ -308,7 +308,7 @@ class TestTimeLimit:
         assert result.exit_code == 2
         assert "3_1.checkpoint.json exists; --force starts anew, --resume goes on" in result.stderr
         assert sono(*line, "--force").exit_code == 0
-        assert names(folder) == ["3_1.n60.best.txt", "3_1.n60.txt"]
+        assert names(folder) == ["3_1.n60.txt"]
 
     def test_a_checkpoint_of_something_else(self, folder: Path, sono: Sono) -> None:
         sono("tighten", "3_1.txt", "-n", "60", *QUICK, "--checkpoint", ".", *AT_ONCE)
@@ -444,14 +444,62 @@ def test_a_full_disk(folder: Path, spawn: Spawn) -> None:
     assert names(folder) == []
 
 
-@posix
-def test_a_full_disk_for_checkpoints_is_noticed_at_once(folder: Path, spawn: Spawn) -> None:
-    process = spawn("tighten", "3_1.txt", "-n", "50000", "--checkpoint", ".", limit=small_files)
-    stdout, stderr = process.communicate()
-    assert process.returncode == 1
-    assert stdout.count("\n") == 1
-    assert stderr == "sono: 3_1.checkpoint.json: cannot be written: File too large\n"
-    assert names(folder) == []
+def test_a_checkpoint_that_cannot_be_written_ends_no_run(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = formats.save
+
+    def full(target: str, content: str) -> None:
+        if target.endswith(".json"):
+            raise formats.FormatError(f"{target}: cannot be written: No space left on device")
+        write(target, content)
+
+    monkeypatch.setattr(formats, "save", full)
+    why = "checkpoint.json: cannot be written: No space left on device"
+    line = ("-n", "60", "--checkpoint", "saved", *QUICK)
+    result = sono("tighten", "3_1.txt", "Hopf.txt", *line)
+    assert result.exit_code == 1
+    assert result.stderr.splitlines() == [
+        f"sono: saved/{name}.{why}; it goes on without a checkpoint" for name in ("3_1", "Hopf")
+    ]
+    assert [row.split("\t")[0] for row in result.stdout.splitlines()] == ["knot", "3_1", "Hopf"]
+    assert names(folder) == ["3_1.n60.txt", "Hopf.n60.txt", "saved"]
+    stopped = sono("tighten", "3_1.txt", "-n", "60", *line, "--force", *AT_ONCE)
+    assert (folder / "3_1.n60.best.txt").exists()
+    assert stopped.stderr.splitlines()[-1].endswith(f"is in 3_1.n60.best.txt; saved/3_1.{why}")
+    search = sono("search", "Hopf", "--trials", "1", "--checkpoint", "saved")
+    assert search.exit_code == 1
+    assert search.stderr.count("search.json: cannot be written: No space left on device") == 2
+    assert (folder / "Hopf.tight.txt").exists()
+
+
+def test_unfinished_ropes_go_when_there_is_a_tight_one(folder: Path, sono: Sono) -> None:
+    line = ("tighten", "3_1.txt", "-n", "60", *QUICK)
+    for _ in range(2):
+        sono(*line, *AT_ONCE)
+    unfinished = [folder / "3_1.n60.best.txt", folder / "3_1.n60.best2.txt"]
+    assert all(path.exists() for path in unfinished)
+    kept = {
+        "3_1.n60.best3.txt": (folder / "Hopf.txt").read_text(),  # another type, and nobody's stopped rope
+        "3_1.n60.best4.txt": "mine",
+        "3_1.n60.best.tsv": "mine",
+    }
+    formats.write("other.txt", library.start("4_1"))
+    sono("tighten", "other.txt", "-n", "60", *QUICK, *AT_ONCE, "-o", "4_1.txt")
+    kept["3_1.n60.best5.txt"] = (folder / "4_1.best.txt").read_text()
+    for name, content in kept.items():
+        (folder / name).write_text(content)
+    assert sono(*line).exit_code == 0
+    assert not any(path.exists() for path in unfinished)
+    for name, content in kept.items():
+        assert (folder / name).read_text() == content
+    # A better rope stays, and so does any beside one that did not get tight.
+    best = (folder / "3_1.n60.txt").read_text().replace("3_1: tight", "3_1: stopped")
+    (folder / "3_1.n40.best.txt").write_text(best)
+    stuck = ("--method", "sono", "--set", "settle_sweeps=1", "--set", "tolerance=1e-12")
+    assert sono("tighten", "3_1.txt", "-n", "60", "-o", "3_1.n40.txt", *stuck).exit_code == 1
+    assert sono("tighten", "3_1.txt", "-n", "40", *QUICK, "--force").exit_code == 0
+    assert (folder / "3_1.n40.best.txt").read_text() == best
 
 
 def test_a_result_that_cannot_be_written_is_not_lost(

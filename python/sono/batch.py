@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import chain, count
+from itertools import chain, count, islice
 from pathlib import Path
 from typing import Any
 
 from sono import checkpoints, contacts, formats, sources
 from sono._core import CurveError, Measures, PanicError
 from sono.formats import FormatError, VertexFile, is_stream
+from sono.invariants import fingerprint
 from sono.pipeline import (
     TRIALS,
     KnotTypeError,
@@ -39,6 +40,12 @@ KIND = "tightening"
 
 SAVE_EVERY = 10.0
 """Seconds between two checkpoints."""
+
+UNFINISHED = 100
+"""Unfinished ropes beside an output that are looked for, to be removed when it is tight,"""
+
+SUPERSEDED = 1e-4
+"""unless their L_c is shorter by more than this share."""
 
 TIGHT, SETTLED, STUCK, STOPPED = "tight", "settled", "stuck", "stopped"
 """What became of a rope: forces in balance, SONO's tolerance reached, neither, or not yet."""
@@ -252,7 +259,12 @@ def _kept(job: Job, n: int) -> Result:
 
 def says_tight(output: str) -> bool:
     """Tell whether the header of a written file says that the polish reached its end."""
-    header = re.compile(rf"^# .*: {TIGHT}, rope radius R_s = 1$", re.MULTILINE)
+    return says(output, TIGHT)
+
+
+def says(output: str, status: str) -> bool:
+    """Tell whether the header of a written file gives the rope this status."""
+    header = re.compile(rf"^# .*: {status}, rope radius R_s = 1$", re.MULTILINE)
     return header.search(formats.load(output)[1]) is not None
 
 
@@ -269,13 +281,15 @@ class _Task:
         self.failed: dict[int, str] = {}
         self.run = self.restored() or self.begun()
         self.end = time.monotonic() + (job.time_limit or math.inf)
-        # At once, so that a checkpoint that cannot be written is noticed before hours are spent.
-        self.save()
 
     def results(self, watch: Callable[[Progress], None]) -> Iterator[Result]:
         """Tighten at each n in turn. Raises `FormatError` if the curve cannot be tightened at all."""
         for known in self.failed.values():  # from before the run was stopped
             yield Result(None, known)
+        try:  # at once, so that it is known before hours are spent
+            self.save()
+        except FormatError as error:
+            yield Result(None, f"{error}; it goes on without a checkpoint")
         while self.run.targets:
             n = self.run.targets[0]
             try:
@@ -299,10 +313,12 @@ class _Task:
                     if unwritten:
                         yield Result(row, unwritten + self.way_on())
                         return
+                    self.tidy(self.job.outputs[n], tight)
                     yield _judged(self.job, row, self.tried(tight))
             self.run.next_target()
         if self.job.checkpoint:
-            self.job.checkpoint.unlink(missing_ok=True)
+            with suppress(OSError):
+                self.job.checkpoint.unlink(missing_ok=True)
 
     def look(self, watch: Callable[[Progress], None], progress: Progress) -> None:
         """Between two slices, or while one takes longer: show, stop or save the run."""
@@ -370,6 +386,18 @@ class _Task:
             key: getattr(tight, key) for key in (*PHYSICS, "sweeps", "factorisations")
         }
         return _rope_row(self.job, None if unwritten else output, measures, status, **work), unwritten
+
+    def tidy(self, output: str, tight: Tight) -> None:
+        """Remove the unfinished ropes of earlier runs beside a tight one, but none shorter or of another type."""
+        if is_stream(output) or not tight.converged:
+            return
+        longer = (1 - SUPERSEDED) * (tight.measures.l_c or math.inf)
+        for path in filter(os.path.exists, islice(_names_of_best(output), UNFINISHED)):
+            with suppress(ValueError, OSError):
+                file, measures = measured(path)
+                same = says(path, STOPPED) and fingerprint(file.components) == fingerprint(tight.curve)
+                if same and (measures.l_c or math.inf) >= longer:
+                    os.unlink(path)
 
     def begun(self) -> Run:
         """Return the run at its beginning."""
@@ -476,9 +504,12 @@ def free_name(output: str) -> str:
     """A name beside `output` for an unfinished result: NAME.best.txt, NAME.best2.txt, ..."""
     if is_stream(output):
         return output
+    return next(name for name in _names_of_best(output) if not os.path.exists(name))
+
+
+def _names_of_best(output: str) -> Iterator[str]:
     path = Path(output)
-    names = (path.with_suffix(f".best{number}{path.suffix}") for number in chain([""], count(2)))
-    return os.fspath(next(name for name in names if not os.path.exists(name)))
+    return (os.fspath(path.with_suffix(f".best{k}{path.suffix}")) for k in chain([""], count(2)))
 
 
 def _identity(job: Job, file: VertexFile) -> str:

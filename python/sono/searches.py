@@ -136,8 +136,10 @@ class _Hunt:
         if earlier and self.is_enough(earlier):
             yield Result(earlier.row)
             return
-        # At once, so that a checkpoint that cannot be written is noticed before hours are spent.
-        self.save()
+        try:  # at once, so that it is known before hours are spent
+            self.save()
+        except FormatError as error:
+            yield Result(None, f"{error}; it goes on without a checkpoint")
         stopped = None
         try:
             rounds = takewhile(self.time_is_left, search.rounds(job.trials or ENDLESS))

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 from sono.cli import options
-from sono.tables import TableWriter, printable
+from sono.tables import Row, TableWriter, printable
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
@@ -53,16 +53,19 @@ class Batch:
         self.stop = ""
         self.signal = 0
         self.not_begun = 0
+        self.turn = 0
+        self.done: set[int] = set()
+        self.held: dict[int, list[Row]] = {}
 
     def run(self, work: "Sequence[Job]", jobs: int) -> int:
         """Do so many jobs at a time; return the exit code."""
         with self.signals_caught(), self.table, self.bar, ThreadPoolExecutor(jobs) as pool:
-            _wait([pool.submit(self.do, job) for job in work])
+            _wait([pool.submit(self.do, number, job) for number, job in enumerate(work)])
         if self.not_begun:
             options.complain(f"{self.not_begun} of {len(work)} knots were not begun")
         return 128 + self.signal if self.signal else int(self.failed)
 
-    def do(self, job: "Job") -> None:
+    def do(self, number: int, job: "Job") -> None:
         """Do one job; whatever is wrong with it stays with it."""
         with self.lock:
             if self.stop:
@@ -72,7 +75,9 @@ class Batch:
         try:
             for result in _guarded(job, lambda done, what: self.watch(task, done, what)):
                 with self.lock, self.bar_hidden():
-                    self.show(result)
+                    self.show(number, result)
+            with self.lock, self.bar_hidden():
+                self.end(number)
         except BaseException:
             self.stop = "the table cannot be written"
             raise
@@ -80,17 +85,27 @@ class Batch:
             with self.lock:
                 self.bar.remove_task(task)
 
-    def show(self, result: "Result") -> None:
-        """Write a row, and tell what is wrong with it."""
+    def show(self, number: int, result: "Result") -> None:
+        """Tell what is wrong, and write a row when its job has its turn: rows keep the order of the jobs."""
         try:
-            if result.row:
+            if result.row and number == self.turn:
                 self.table.row(result.row)
+            elif result.row:
+                self.held.setdefault(number, []).append(result.row)
         finally:
             if result.note and not self.quiet:
                 options.complain(result.note)
             if result.trouble:
                 self.failed = True
                 options.complain(result.trouble)
+
+    def end(self, number: int) -> None:
+        """Let the next job have its turn, and write the rows that have been waiting for that."""
+        self.done.add(number)
+        while self.turn in self.done:
+            self.turn += 1
+            for row in self.held.pop(self.turn, []):
+                self.table.row(row)
 
     @contextmanager
     def bar_hidden(self) -> Iterator[None]:
