@@ -388,7 +388,7 @@ class _Task:
         return _rope_row(self.job, None if unwritten else output, measures, status, **work), unwritten
 
     def tidy(self, output: str, tight: Tight) -> None:
-        """Remove the unfinished ropes of earlier runs beside a tight one, but none shorter or of another type."""
+        """Remove unfinished ropes of earlier runs beside a tight one, but none shorter or of another type."""
         if is_stream(output) or not tight.converged:
             return
         longer = (1 - SUPERSEDED) * (tight.measures.l_c or math.inf)
