@@ -140,6 +140,8 @@ def test_standard_input_and_output(folder: Path, sono: Sono) -> None:
         (["3_1", "-o", "rope.npy"], "rope.npy: .npy is no format for vertices"),
         (["3_1", "3_1"], "3_1.tight.txt would be written 2 times; give each knot once"),
         (["3_1", "--dl", "3"], "--dl"),
+        (["3_1", "--dl", "nan"], "nan is not a number"),
+        (["3_1", "--shard", f"{'9' * 5000}/1"], "give I/N with I from 1 to N"),
     ],
 )
 def test_usage_errors(sono: Sono, arguments: list[str], message: str) -> None:

@@ -61,6 +61,8 @@ def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
         (["3_1", "--braid", "1"], "give either a NAME or a --braid word"),
         (["3-1"], "did you mean '3_1'?"),
         (["T(0,3)"], "p and q must not be zero"),
+        ([f"T({'9' * 5000},2)"], "unknown knot"),
+        (["--braid", "9" * 5000], "give whole numbers"),
         (["--braid", "1 0"], "a braid generator must not be 0"),
         (["--braid", "a b"], "give whole numbers"),
         (["3_1", "--scramble", "x"], "'--scramble'"),

@@ -64,7 +64,7 @@ def knots(function: Function) -> Function:
 
 
 def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> slice | None:
-    match = re.fullmatch(r"(\d+)/(\d+)", value or "1/1")
+    match = re.fullmatch(r"(\d{1,15})/(\d{1,15})", value or "1/1")
     if not match or not 1 <= int(match[1]) <= int(match[2]):
         raise click.BadParameter(f"{value!r}: give I/N with I from 1 to N, such as 3/20")
     return slice(int(match[1]) - 1, None, int(match[2]))
@@ -137,6 +137,15 @@ def table(default: Sequence[str]) -> Callable[[Function], Function]:
         )(function)
 
     return decorate
+
+
+class Number(click.FloatRange):
+    """A number in a range, which nan is not."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Read it."""
+        number = float(super().convert(value, param, ctx))
+        return number if number == number else self.fail(f"{value} is not a number", param, ctx)
 
 
 def time_limit(help: str) -> Callable[[Function], Function]:

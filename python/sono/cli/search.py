@@ -22,7 +22,7 @@ COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
 @options.time_limit("Begin no further round of trials of a knot after this time.")
 @click.option(
     "--dl",
-    type=click.FloatRange(0.005, 0.5),
+    type=options.Number(0.005, 0.5),
     default=0.2,
     show_default=True,
     help="Edge length of the ropes at the end, in radii.",
