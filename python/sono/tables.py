@@ -336,12 +336,15 @@ def _row(where: str, values: Mapping[str, object]) -> Row:
 def _value(where: str, column: Column, value: object) -> Value:
     from sono.formats import FormatError
 
-    if value is None or (column.kind is str and isinstance(value, str)):
+    if value is None or (not column.spec and isinstance(value, str)):
         return value
-    with suppress(ValueError, OverflowError):
-        number = column.kind(value) if isinstance(value, str | int | float) else math.nan
-        if number == value or (isinstance(value, str) and number == number):
-            return number
+    if column.spec and isinstance(value, str | int | float):
+        with suppress(ValueError, OverflowError):
+            number = int(value) if column.spec == "d" else float(value)
+            # Only the SR of a curve without distant vertices is infinite.
+            finite = math.isfinite(number) or (column.key == "sr" and number > 0)
+            if finite and (number == value or isinstance(value, str)):
+                return number
     what = {int: "whole number", float: "number", str: "text"}[column.kind]
     shown = repr(value) if len(repr(value)) <= 30 else f"{repr(value)[:27]}..."
     raise FormatError(f"{where}: {shown} in the column {column.key} is no {what}")
