@@ -11,6 +11,7 @@ import pytest
 README = Path(__file__).parent.parent / "README.md"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix" or not README.exists(), reason="needs a shell and the source tree")
 def test_the_trefoils_of_the_readme(tmp_path: Path) -> None:
     *_, block = re.findall(r"## Using it\n+```sh\n(.*?)```", README.read_text(), re.DOTALL)
