@@ -55,8 +55,9 @@ def spawn(folder: Path) -> Iterator[Spawn]:
         *arguments: str, limit: Callable[[], None] = lambda: None, **more: Any
     ) -> subprocess.Popen[str]:
         def prepare() -> None:
-            # Background jobs of a shell ignore Ctrl-C, and so would their children.
-            signal.signal(signal.SIGINT, signal.SIG_DFL)
+            # Background jobs of a shell ignore Ctrl-C, those of nohup SIGHUP, and so would their children.
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                signal.signal(number, signal.SIG_DFL)
             limit()
 
         pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
