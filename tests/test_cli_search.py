@@ -2,13 +2,17 @@
 
 import os
 import signal
+import threading
 import time
 from pathlib import Path
 
 import pytest
 from conftest import Sono, Spawn, vertices
 
-from sono import formats, library, measure, search, tables
+from sono import checkpoints, formats, library, measure, search, searches, tables
+
+PROMPT = 8
+"""Seconds, four times what a stop may take on a machine with nothing else to do."""
 
 ONE = ("--trials", "1", "--minima", "1")
 
@@ -119,7 +123,7 @@ def test_a_checkpoint_of_another_knot(folder: Path, sono: Sono) -> None:
     assert "is of another knot or seed" in result.stderr
     (folder / "kept/4_1.search.json").write_text("{}")
     result = sono("search", "4_1", "--trials", "1", "--checkpoint", "kept", "--resume")
-    assert "is no checkpoint of a search" in result.stderr
+    assert "4_1.search.json: is no checkpoint, or an old or damaged one; remove it" in result.stderr
 
 
 def test_standard_input_and_output(folder: Path, sono: Sono) -> None:
@@ -169,9 +173,100 @@ def test_a_signal_keeps_the_best(folder: Path, spawn: Spawn) -> None:
 
 
 def test_a_time_limit_ends_well(folder: Path, sono: Sono) -> None:
-    result = sono("search", "3_1", "--time-limit", "0.5", "--minima", "1")
+    start = time.monotonic()
+    result = sono("search", "3_1", "--time-limit", "4", "--minima", "1")
+    assert time.monotonic() < start + 4 + PROMPT
     assert result.exit_code == 0
     assert rows(result.stdout)[0]["status"] == "tight"
+    assert " s of 4 s\n" in (folder / "3_1.tight.txt").read_text()
+    # Which is all that was asked for.
+    again = sono("search", "3_1", "--time-limit", "4", "--minima", "1", "--resume")
+    assert (again.exit_code, rows(again.stdout)[0]["l_a"]) == (0, rows(result.stdout)[0]["l_a"])
+    assert time.monotonic() < start + 8 + PROMPT
+
+
+@pytest.mark.parametrize("what", ["attempt", "refine", "finish"])
+def test_a_time_limit_waits_for_nobody(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch, what: str
+) -> None:
+    free = threading.Event()
+    make = getattr(search, what)
+
+    def hold(*arguments: object) -> object:
+        assert free.wait(100)
+        return make(*arguments)
+
+    for module in (search, searches):
+        if hasattr(module, what):
+            monkeypatch.setattr(module, what, hold)
+    start = time.monotonic()
+    result = sono("search", "3_1", "--time-limit", "4", "--minima", "1", "--dl", "0.1")
+    free.set()
+    assert time.monotonic() < start + 4 + PROMPT
+    assert result.exit_code == 1
+    if what == "attempt":
+        assert "the time limit of 4 s was reached before a trial ended" in result.stderr
+        return
+    row = rows(result.stdout)[0]
+    assert measure(formats.read("3_1.tight.txt").components).l_a == row["l_a"]
+    if what == "refine":
+        assert "before a rope was refined; the best so far is in 3_1.tight.txt" in result.stderr
+        assert row["status"] == "stopped"
+    else:
+        assert "its ropes did not come to edges of 0.1" in result.stderr
+        assert row["status"] == "tight"
+
+
+@pytest.mark.parametrize("dl", ["0.5", "0.45", "0.2", "0.07"])
+@pytest.mark.parametrize("knot", ["unknot", "3_1", "Hopf"])
+def test_a_finished_search_is_not_repeated(
+    sono: Sono, monkeypatch: pytest.MonkeyPatch, knot: str, dl: str
+) -> None:
+    line = ("search", knot, "--trials", "2", "--dl", dl)
+    first = sono(*line, "--checkpoint", "kept")
+    assert first.exit_code == 0
+    best = rows(first.stdout)[0]
+    assert abs(float(best["dl"] or 0) - float(dl)) <= max(0.02, float(dl) / float(best["n"] or 1)) * float(dl)
+    monkeypatch.setattr(search, "attempt", None)
+    again = sono(*line, "--resume")
+    assert again.exit_code == 0
+    assert [rows(again.stdout)[0][key] for key in ("n", "l_a")] == [best[key] for key in ("n", "l_a")]
+
+
+@pytest.mark.slow
+def test_jobs_change_nothing(folder: Path, sono: Sono) -> None:
+    line = ("search", "4_1", "3_1", "5_1", "--trials", "6", "--minima", "3")
+    one, many = (sono(*line, "-j", jobs, "-o", f"{jobs}/") for jobs in ("1", "6"))
+    assert one.exit_code == many.exit_code == 0
+    keys = ("knot", "n", "l_a", "hits", "variant")
+    found = [sorted([row[key] for key in keys] for row in rows(text.stdout)) for text in (one, many)]
+    assert found[0] == found[1]
+    for path in (folder / "1").iterdir():
+        assert vertices(path) == vertices(folder / "6" / path.name)
+
+
+def test_a_damaged_checkpoint_spoils_nothing(folder: Path, sono: Sono) -> None:
+    line = ("search", "3_1", "4_1", *ONE, "--checkpoint", "kept", "--resume", "-o", "out/")
+    sono(*line)
+    path = folder / "kept/3_1.search.json"
+    state = checkpoints.load(path, searches.KIND)
+    text = path.read_text()
+    path.write_text(text.replace('"trials": 1', '"trials": 7'))
+    result = sono(*line)
+    assert result.exit_code == 1
+    assert "sono: kept/3_1.search.json: is damaged; remove it" in result.stderr
+    assert [row["knot"] for row in rows(result.stdout)] == ["4_1"]
+    # One vertex is wrong, and nothing else tells of it.
+    minimum = state["search"]["minima"][0]
+    curve = checkpoints.unpacked(minimum["curve"])
+    assert curve
+    curve[0][5] *= 1.2
+    minimum["curve"] = checkpoints.packed(curve)
+    checkpoints.save(path, searches.KIND, state)
+    (folder / "out/3_1.tight.txt").unlink()
+    result = sono("search", "3_1", "--trials", "2", "--checkpoint", "kept", "--resume", "-o", "out/")
+    assert float(rows(result.stdout)[0]["l_a"] or 0) == pytest.approx(32.743, abs=1e-2)
+    assert all(row["status"] != "tight" or float(row["l_a"] or 0) < 33 for row in rows(result.stdout))
 
 
 def test_tighten_takes_names_too(folder: Path, sono: Sono) -> None:
@@ -184,7 +279,9 @@ def test_tighten_takes_names_too(folder: Path, sono: Sono) -> None:
 def test_a_finished_file_of_another_knot_or_edge_length_is_not_kept(folder: Path, sono: Sono) -> None:
     sono("search", "3_1", *ONE)
     finer = rows(sono("search", "3_1", *ONE, "--resume", "--dl", "0.1").stdout)
-    assert measure(formats.read("3_1.tight.txt").components).n == finer[0]["n"] == 327
+    measures = measure(formats.read("3_1.tight.txt").components)
+    assert measures.n == finer[0]["n"]
+    assert measures.dl == pytest.approx(0.1, rel=0.02)
     before = (folder / "3_1.tight.txt").read_text()
     other = sono("search", "4_1", *ONE, "-o", "3_1.tight.txt", "--resume")
     assert (other.exit_code, (folder / "3_1.tight.txt").read_text()) == (1, before)
@@ -244,7 +341,7 @@ def test_a_better_rope_is_not_overwritten(folder: Path, sono: Sono) -> None:
 def test_standard_output_gets_one_curve(folder: Path, sono: Sono) -> None:
     result = sono("search", "3_1", "--trials", "10", "-o", "-", "-q")
     (folder / "out.txt").write_text(result.stdout)
-    assert measure(formats.read("out.txt").components).n == 164
+    assert measure(formats.read("out.txt").components).dl == pytest.approx(0.2, rel=0.02)
 
 
 def test_what_nobody_expected_stays_with_its_knot(

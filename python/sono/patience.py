@@ -4,6 +4,7 @@ Most calls into the core take a slice of a tenth of a second, but some cannot be
 beginning an engine or a Newton step takes seconds.
 """
 
+import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import TypeVar
@@ -27,6 +28,20 @@ def patiently(call: Callable[[], Result], look: Callable[[], None] = lambda: Non
         return awaited(pool.submit(call), look)
     finally:
         pool.shutdown(wait=False)
+
+
+def within(seconds: float, call: Callable[[], Result]) -> Result | None:
+    """Return what a call returns, or None if it takes longer."""
+    end = time.monotonic() + seconds
+
+    def look() -> None:
+        if time.monotonic() > end:
+            raise TimeoutError
+
+    try:
+        return patiently(call, look)
+    except TimeoutError:
+        return None
 
 
 def awaited(future: "Future[Result]", look: Callable[[], None]) -> Result:

@@ -25,7 +25,7 @@ from sono import _core
 from sono._core import Collapse, CurveError, Measures, PanicError, Polish, PolishStatus, Status, Tightener
 from sono.checkpoints import packed, unpacked
 from sono.invariants import Curve, Fingerprint, TooEntangledError, fingerprint
-from sono.patience import patiently
+from sono.patience import patiently, within
 
 Method = Literal["both", "sono", "polish"]
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
@@ -362,15 +362,9 @@ class Run:
         """Tell whether a curve has the type of the one that was given, as far as a moment suffices."""
         if self.type is None or sum(map(len, curve)) > COMPARED:
             return True
-        end = time.monotonic() + MOMENT
-
-        def look() -> None:
-            if time.monotonic() > end:
-                raise _TimeIsUp
-
         try:
-            return patiently(partial(fingerprint, curve), look) == self.type
-        except (_TimeIsUp, TooEntangledError):
+            return within(MOMENT, partial(fingerprint, curve)) in (self.type, None)
+        except TooEntangledError:
             return True
 
     @property

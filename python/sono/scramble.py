@@ -13,18 +13,20 @@ Map: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """A map of space, which takes points (m, 3) to points (m, 3)."""
 
 
-def scramble(curve: Curve, seed: int, swirls: int = 40) -> Curve:
+def scramble(curve: Curve, seed: int, swirls: int = 40, watch: Callable[[], None] = lambda: None) -> Curve:
     """Return `curve` entangled by random swirls of space, in the same unit and with more vertices.
 
     A swirl turns every sphere about a centre by an angle that fades with its radius; let the angle grow from
     zero, and it is an isotopy of all space, so the image has the knot type of the curve. The polygon has the
     type of the image because its edges are halved until they are shorter than half a rope radius, and a swirl
     after which the curve would not hold a rope of that radius, 600 radii long at most, is left out. The same
-    seed gives the same curve. Raises ValueError for a curve that touches itself, or too thin a rope.
+    seed gives the same curve. `watch` is called before each swirl; what it raises passes through. Raises
+    ValueError for a curve that touches itself, or too thin a rope.
     """
     random = np.random.default_rng(seed)
     curve, radius = _rope(curve)
     for _ in range(swirls):
+        watch()
         swirl = _swirl(random, np.vstack(curve))
         moved = [_image(component, swirl, radius / 2) for component in curve]
         if _length(moved) <= 600 * radius and _holds_rope(moved, radius):

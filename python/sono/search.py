@@ -12,6 +12,7 @@ machines, and a search gives the same minima whatever the number of workers.
 
 import json
 import math
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -22,8 +23,9 @@ from numpy.typing import NDArray
 
 from sono import library
 from sono._core import Collapse, Measures, PanicError, Polish, Tightener
+from sono.checkpoints import packed, unpacked
 from sono.invariants import Curve, Fingerprint, fingerprint
-from sono.pipeline import HOT, SLICE, as_curve, tighten
+from sono.pipeline import HOT, SLICE, Stopped, measure, tighten
 from sono.scramble import scramble
 
 TRIAL_EDGE = 0.45
@@ -31,6 +33,9 @@ TRIAL_EDGE = 0.45
 
 FINE_EDGE = 0.2
 """Edge length at which minima are compared."""
+
+POLISHES = 3
+"""Attempts to polish a shape on edges of that length, as its own length changes meanwhile."""
 
 HOT_ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
 GENTLE_ANNEAL = {"anneal_sweeps": 5_000, "anneal_tolerance": 0.1}
@@ -51,6 +56,12 @@ ROUND = 8
 REFINED = 2
 """After each round of so many trials so many of its shapes are refined."""
 
+LAG = 32
+"""Rounds that may pass at most until a refined shape is waited for."""
+
+AHEAD = 32
+"""Trials for each worker that are begun ahead of the round they belong to, so that none has to wait."""
+
 FINALISTS = 4
 """Shapes that are refined after the last round."""
 
@@ -58,7 +69,10 @@ RESEATED = 2
 """Minima whose beads are seated anew at the end."""
 
 KEPT = 24
-"""Unrefined shapes that are remembered."""
+"""Unrefined shapes that are remembered, and minima."""
+
+MET = 16
+"""Coarse shapes of a minimum that are remembered."""
 
 SAME_RADII = 0.007
 """Relative difference of the radii of gyration up to which ropes of one edge length count as one shape."""
@@ -71,6 +85,9 @@ SHORTER_SHAPE = 5e-3
 
 SAME_EDGES = 0.02
 """Relative difference of edge lengths up to which the grooves of two ropes are alike."""
+
+INTACT = 1e-6
+"""Dispersion, and deviation of R_s from 1, up to which a restored minimum counts as tight."""
 
 SEED_STRIDE = 10**6
 """Variants of one seed; those of the next begin after them."""
@@ -87,14 +104,23 @@ Watch: TypeAlias = Callable[[], None]
 """Called about ten times a second; whatever it raises stops the work."""
 
 
-Refining: TypeAlias = "tuple[Shape, Callable[[], Minimum | None]]"
-"""A shape, and what waits for it to be refined."""
+Waiting: TypeAlias = "Callable[[], Minimum | None]"
+"""Waits for a minimum."""
+
+
+class OutOfTime(Stopped):
+    """The trials of a search, or the rest of it, are to end; what it has counts."""
 
 
 class Submit(Protocol):
-    """Has a function done elsewhere, perhaps on another machine; what it returns waits for the result."""
+    """Has a function done elsewhere, perhaps on another machine; what it returns waits for the result.
 
-    def __call__(self, function: Callable[..., Result], /, *args: Any) -> Callable[[], Result]:
+    Trials have a `rank`, the least of which comes first; None is for what waits for no trial.
+    """
+
+    def __call__(
+        self, function: Callable[..., Result], /, *args: Any, rank: int | None = None
+    ) -> Callable[[], Result]:
         """Begin it."""
 
 
@@ -111,20 +137,21 @@ class Source:
     type: Fingerprint
 
     @classmethod
-    def of(cls, curve: Curve, name: str | None = None) -> Self:
-        """Return the source of a curve, which is what the library draws if there is a name."""
-        return cls(name if name and library.has_variants(name) else None, curve, fingerprint(curve))
+    def of(cls, curve: Curve, name: str | None = None, watch: Watch = unwatched) -> Self:
+        """Return the source of a curve, which is what the library draws if there is a name.
 
-    def start(self, variant: int, watch: Watch) -> Curve:
-        """Return a starting conformation; variant 0 is the curve itself.
-
-        A nameless curve is collapsed and then scrambled, which a long and thin one could not be.
+        A nameless curve is collapsed first, as a long and thin one cannot be scrambled. Raises `ValueError`.
         """
+        type = fingerprint(curve)
+        if name and library.has_variants(name):
+            return cls(name, curve, type)
+        return cls(None, _done(Collapse(curve, False, "{}"), watch).best(), type)
+
+    def start(self, variant: int, watch: Watch = unwatched) -> Curve:
+        """Return a starting conformation; variant 0 is the curve itself."""
         if not variant:
             return self.curve
-        if self.name:
-            return library.start(self.name, variant)
-        return scramble(_done(Collapse(self.curve, False, "{}"), watch).best(), variant)
+        return library.start(self.name, variant) if self.name else scramble(self.curve, variant, watch=watch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,14 +174,14 @@ class Shape:
 class Minimum:
     """A refined rope, the variant that led there, and the number of trials that did.
 
-    `tight` tells whether the polish reached its end, `residual` is the largest force left over, and `met` has
-    the radii of gyration of the coarse shapes that were refined to it.
+    `tight` tells whether the polish reached its end, `residual` is the largest force left over, if that is
+    known, and `met` has the radii of gyration of the coarse shapes that were refined to it.
     """
 
     variant: int
     length: float
     tight: bool
-    residual: float
+    residual: float | None
     curve: Curve
     met: list[Radii]
     hits: int = 0
@@ -182,12 +209,17 @@ def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
 
 
 def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
-    """Polish a shape to the end on finer edges. Returns None for a shape that cannot be refined."""
-    assert shape.curve is not None
-    polish = _polished(shape.curve, round(shape.length / FINE_EDGE), watch)
-    if polish and not same_edges(polish.status().best.dl, FINE_EDGE):  # it was far from tight
-        polish = _polished(polish.best(), round(_length(polish.status().best) / FINE_EDGE), watch)
-    return polish and _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
+    """Polish a shape to the end on edges of `FINE_EDGE`. Returns None for one that cannot be refined."""
+    curve, length = shape.curve, shape.length
+    for _ in range(POLISHES):
+        n = round(length / FINE_EDGE)
+        polish = curve and _polished(curve, n, watch)
+        if not polish:
+            return None
+        curve, length = polish.best(), _length(polish.status().best)
+        if has_edges(n, length, FINE_EDGE):
+            return _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
+    return None
 
 
 def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None:
@@ -231,6 +263,11 @@ def same_edges(one: float, other: float) -> bool:
     return abs(one - other) <= SAME_EDGES * other
 
 
+def has_edges(n: int, length: float, dl: float) -> bool:
+    """Tell whether a rope of n vertices and this length has edges of dl, as far as n is a whole number."""
+    return abs(n * dl - length) <= max(SAME_EDGES * length, dl)
+
+
 def radii_of_gyration(curve: Curve) -> Radii:
     """Return the three principal radii of gyration (3,) of all vertices, in increasing order."""
     arms = np.vstack(curve)
@@ -245,42 +282,30 @@ class Search:
 
     `trials` counts the variants tried so far, of which `failed` could not be tightened. `changed` counts the
     ropes that ended in another knot type, in trials or later; none should. `shapes` are the shortest ones
-    that are not refined and `minima` those that are, both shortest first.
+    that are not refined and `minima` those that are, `kept` at most, both shortest first. `refining` has the
+    shapes under way, and how many trials there will be when they are waited for.
     """
 
     seed: int = 0
+    kept: int = KEPT
     trials: int = 0
     changed: int = 0
     failed: int = 0
     shapes: list[Shape] = field(default_factory=list)
     minima: list[Minimum] = field(default_factory=list)
+    refining: list[tuple[int, Shape]] = field(default_factory=list)
 
-    def run(self, source: Source, rounds: Iterator[range], submit: Submit) -> Iterator[None]:
-        """Make the trials of these `rounds`, pausing after each; then refine the best shapes that are left.
+    def run(self, source: Source, trials: int, submit: Submit, workers: int = 1) -> Iterator[None]:
+        """Make trials until there are so many, pausing after each round; then refine the best shapes left.
 
-        The best minima are seated anew at the end. `submit` has functions of this module done elsewhere.
+        The best minima are seated anew at the end. `submit` has functions of this module done elsewhere, by
+        so many `workers`, on whose number nothing depends. If one raises `OutOfTime` trials are over.
         """
-        refining = self._refined(submit, REFINED if self.trials else 0)
-        trying = self._tried(source, submit, next(rounds, range(0)))
-        while trying:
-            # Begun before the results of this round are in, so that no worker waits.
-            ahead = self._tried(source, submit, next(rounds, range(0)))
-            for trial in trying:
-                self._take(trial())
-            self._keep(refining, source)
-            yield
-            refining = self._refined(submit, REFINED)
-            trying = ahead
-        self._keep(refining, source)
-        self._keep(self._refined(submit, FINALISTS), source)
-        yield
-        before = self.minima[:RESEATED]
-        reseating = [submit(reseat, minimum) for minimum in before]
-        reseated = [self.confirmed(minimum(), source) for minimum in reseating]
-        self.minima = self.minima[RESEATED:]
-        for minimum, again in zip(before, reseated, strict=True):
-            self._merge(again or minimum)
-        yield
+        waiting = deque(submit(refine, shape) for _, shape in self.refining)
+        with suppress(OutOfTime):
+            yield from self._try(source, trials, submit, AHEAD * workers, waiting)
+        with suppress(OutOfTime):
+            yield from self._end(source, submit, waiting)
 
     def confirmed(self, minimum: Minimum | None, source: Source) -> Minimum | None:
         """Return a minimum, if there is one, of the knot's type; count it if it is of another."""
@@ -289,29 +314,48 @@ class Search:
         self.changed += 1
         return None
 
-    def rounds(self, trials: int) -> Iterator[range]:
-        """Return the rounds from here to so many trials in all."""
-        return (range(i, min(i + ROUND, trials)) for i in range(self.trials, trials, ROUND))
-
     def state(self) -> dict[str, Any]:
         """Return all that is needed to go on later, for JSON; `Search.restore` is its inverse."""
         return json.loads(json.dumps(vars(self), default=_plain))  # type: ignore[no-any-return]
 
     @classmethod
     def restore(cls, state: dict[str, Any]) -> Self:
-        """Return the search that gave this state."""
-        shapes = [
-            Shape(**shape | {"radii": np.array(shape["radii"]), "curve": as_curve(shape["curve"])})
-            for shape in state["shapes"]
-        ]
-        minima = [
-            Minimum(**old | {"met": list(map(np.array, old["met"])), "curve": as_curve(old["curve"])})
-            for old in state["minima"]
-        ]
-        return cls(**state | {"shapes": shapes, "minima": minima})
+        """Return the search that gave this state, its minima measured again. Raises an error for others."""
+        shapes = list(map(_shape, state["shapes"]))
+        minima = sorted(map(_minimum, state["minima"]), key=rank)
+        refining = [(int(due), _shape(shape)) for due, shape in state["refining"]]
+        return cls(**state | {"shapes": shapes, "minima": minima, "refining": refining})
 
-    def _tried(self, source: Source, submit: Submit, trials: range) -> list[Callable[[], Shape]]:
-        return [submit(attempt, source, self._variant(source, trial)) for trial in trials]
+    def _try(
+        self, source: Source, trials: int, submit: Submit, ahead: int, waiting: deque[Waiting]
+    ) -> Iterator[None]:
+        """Make the trials, taking them and the refined shapes in an order that nobody's speed changes."""
+        first = begun = self.trials
+        trying: deque[Callable[[], Shape]] = deque()
+        while self.trials < trials:
+            while begun < min(trials, self.trials + max(ahead, 2 * ROUND)):
+                variant = self._variant(source, begun)
+                trying.append(submit(attempt, source, variant, rank=begun - first))
+                begun += 1
+            for _ in range(min(ROUND, trials - self.trials)):
+                self._take(trying.popleft()())
+            self._keep(waiting, sum(due <= self.trials for due, _ in self.refining), source)
+            self._refine(REFINED, submit, waiting)
+            yield
+
+    def _end(self, source: Source, submit: Submit, waiting: deque[Waiting]) -> Iterator[None]:
+        """Refine the best shapes that are left, and seat the best minima anew."""
+        self._keep(waiting, len(waiting), source)
+        self._refine(FINALISTS, submit, waiting)
+        self._keep(waiting, len(waiting), source)
+        yield
+        before = self.minima[:RESEATED]
+        reseating = [submit(reseat, minimum) for minimum in before]
+        for minimum, seated in zip(before, reseating, strict=True):
+            if again := self.confirmed(seated(), source):
+                self.minima = [other for other in self.minima if other is not minimum]
+                self._merge(again)
+        yield
 
     def _variant(self, source: Source, trial: int) -> int:
         """Return the variant of a trial: 0, -1, 1, -2, 2, ... of knots with both kinds, else 0, 1, 2, ..."""
@@ -320,12 +364,21 @@ class Search:
             return first + trial
         return -(first + trial // 2 + 1) if trial % 2 else first + trial // 2
 
-    def _refined(self, submit: Submit, most: int) -> list[Refining]:
-        """Begin to refine the shortest shapes; they stay in the list until they are done."""
-        return [(shape, submit(refine, shape)) for shape in self.shapes[:most]]
+    def _refine(self, most: int, submit: Submit, waiting: deque[Waiting]) -> None:
+        """Begin to refine the shortest shapes; they stay in the list until they are done.
+
+        At first they are waited for after the next round, later after so many trials as there were by half:
+        many workers make many trials while one refines a shape.
+        """
+        due = self.trials + ROUND * min(max(self.trials // (2 * ROUND), 1), LAG)
+        under_way = [shape.radii for _, shape in self.refining]
+        fresh = [s for s in self.shapes if not any(_alike(s.radii, radii) for radii in under_way)]
+        for shape in fresh[:most]:
+            self.refining.append((due, shape))
+            waiting.append(submit(refine, shape))
 
     def _take(self, shape: Shape) -> None:
-        """Count a trial, and remember its shape if it is new."""
+        """Count a trial, and remember its shape if it is new and may lead to a minimum that is kept."""
         self.trials += 1
         self.changed += shape.changed
         self.failed += shape.curve is None and not shape.changed
@@ -336,6 +389,10 @@ class Search:
             if not another and any(_alike(shape.radii, radii) for radii in minimum.met):
                 self.minima[i] = replace(minimum, hits=minimum.hits + 1)
                 return
+        if len(self.minima) == self.kept:
+            longest = max(minimum.length for minimum in self.minima)
+            if shape.length > (1 + SHORTER_SHAPE) * longest:
+                return
         for i, other in enumerate(self.shapes):
             if _alike(shape.radii, other.radii):
                 shorter = min(shape, other, key=lambda shape: shape.length)
@@ -345,27 +402,30 @@ class Search:
             self.shapes.append(shape)
         self.shapes = sorted(self.shapes, key=lambda shape: shape.length)[:KEPT]
 
-    def _keep(self, refining: list[Refining], source: Source) -> None:
-        """Wait for refined shapes; take each for a new minimum, or for one that is known."""
-        for shape, refined in refining:
-            found = refined()
+    def _keep(self, waiting: deque[Waiting], count: int, source: Source) -> None:
+        """Wait for the first refined shapes; take each for a new minimum, or for one that is known."""
+        for _ in range(count):
+            found = waiting[0]()
+            waiting.popleft()
+            _, shape = self.refining.pop(0)
             # Other trials may have met the shape while it was refined.
             same = [other for other in self.shapes if _alike(other.radii, shape.radii)]
             self.shapes = [other for other in self.shapes if other not in same]
             if found := self.confirmed(found, source):
-                self._merge(replace(found, hits=sum(shape.hits for shape in same)))
+                self._merge(replace(found, hits=sum(shape.hits for shape in same or [shape])))
 
     def _merge(self, found: Minimum) -> None:
         radii = radii_of_gyration(found.curve)
         for i, known in enumerate(self.minima):
             near = abs(known.length - found.length) < SAME_LENGTH * found.length
             if near and _alike(radii_of_gyration(known.curve), radii):
-                shorter = min(known, found, key=rank)
-                self.minima[i] = replace(shorter, met=known.met + found.met, hits=known.hits + found.hits)
+                shorter, met = min(known, found, key=rank), (known.met + found.met)[-MET:]
+                self.minima[i] = replace(shorter, met=met, hits=known.hits + found.hits)
                 break
         else:
             self.minima.append(found)
-        self.minima = sorted(self.minima, key=rank)  # a new list, as other threads look at the first
+        # A new list, as other threads look at the first.
+        self.minima = sorted(self.minima, key=rank)[: self.kept]
 
 
 def _done(worker: Worker, watch: Watch) -> Worker:
@@ -415,5 +475,17 @@ def _alike(one: Radii, other: Radii) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    """Make arrays and dataclasses fit for JSON."""
-    return value.tolist() if isinstance(value, np.ndarray) else vars(value)
+    """Make radii, shapes and minima fit for JSON."""
+    return value.tolist() if isinstance(value, np.ndarray) else vars(value) | {"curve": packed(value.curve)}
+
+
+def _shape(state: dict[str, Any]) -> Shape:
+    return Shape(**state | {"radii": np.array(state["radii"], float), "curve": unpacked(state["curve"])})
+
+
+def _minimum(state: dict[str, Any]) -> Minimum:
+    curve = unpacked(state["curve"]) or []
+    measures = measure(curve)
+    intact = max(abs(measures.r_s - 1), measures.dispersion) <= INTACT
+    own = {"curve": curve, "length": _length(measures), "tight": bool(state["tight"]) and intact}
+    return Minimum(**state | own | {"met": [np.array(radii, float) for radii in state["met"]]})

@@ -1,7 +1,6 @@
 """One knot's search as a job of a batch: its files, its checkpoint, its rows."""
 
 import hashlib
-import json
 import math
 import os
 import re
@@ -9,11 +8,12 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import takewhile
+from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-from sono import formats, sources
+from sono import checkpoints, formats, sources
 from sono.batch import (
     KEPT_RESIDUAL,
     STOPPED,
@@ -27,13 +27,38 @@ from sono.batch import (
 )
 from sono.formats import FormatError, VertexFile, is_stream
 from sono.invariants import fingerprint
+from sono.patience import patiently, within
 from sono.pipeline import Stopped, forces, measure
-from sono.search import FINE_EDGE, SAME_LENGTH, Minimum, Search, Shape, Source, finish, rank, same_edges
+from sono.search import (
+    FAILURES,
+    FINE_EDGE,
+    KEPT,
+    SAME_LENGTH,
+    Minimum,
+    OutOfTime,
+    Search,
+    Source,
+    finish,
+    has_edges,
+    rank,
+    same_edges,
+)
 from sono.tables import Row
 from sono.workers import Workers
 
 ENDLESS = 10**6
 """Trials of a search that a time limit ends."""
+
+REFINING, FINISHING = 0.3, 0.3
+LONGEST_LIMIT = 60.0
+"""Shares of a time limit, up to so many seconds of it, that are kept for refining the last shapes, and for
+polishing minima on other edges where those are asked for."""
+
+MOMENT = 0.5
+"""Seconds in which a stopped search compares its best rope with one on other edges."""
+
+KIND = "search"
+"""What checkpoints of this module call themselves."""
 
 SAME_ROPE = 1e-8
 """Relative difference in L_a up to which ropes of the same edges are one, found again."""
@@ -41,7 +66,8 @@ SAME_ROPE = 1e-8
 Show = Callable[[float, str], None]
 
 _SEARCHED = re.compile(
-    r"^# searched: variant (-?\d+), seed (\d+), met in (\d+) of (\d+) trials, (\d+) s$", re.MULTILINE
+    r"^# searched: variant (-?\d+), seed (\d+), met in (\d+) of (\d+) trials, (\d+) s(?: of (\S+) s)?$",
+    re.MULTILINE,
 )
 
 
@@ -49,7 +75,7 @@ _SEARCHED = re.compile(
 class SearchJob:
     """Search the knot that `source` names, or the curve in that file, for its shortest tight rope.
 
-    The search ends after so many `trials`, or begins no further round of them after `time_limit` seconds. The
+    The search ends after so many `trials` or `time_limit` seconds, the last of which are for refining. The
     shortest minimum is written to `output` whenever a shorter one is found; in the end the `minima` shortest
     are polished with edges `dl` long, in radii. `checkpoint` is the file that keeps the state of the search;
     with `resume` it goes on from there, an output whose search was finished is kept, and any other is only
@@ -89,133 +115,184 @@ class SearchJob:
 
 @dataclass(frozen=True)
 class _Earlier:
-    """A rope that is in the output already: its row, and what it says of the search that found it."""
+    """A rope that is in the output already, its row, and what it says of the search that found it.
+
+    `limit` are the seconds after which that search was over, if that is why it ended.
+    """
 
     row: Row
+    rope: Minimum
     seed: int | None = None
     trials: int = 0
-    seconds: int = 0
+    limit: float = 0
 
     @property
-    def tight(self) -> bool:
-        """Whether its forces are in balance."""
-        return self.row["status"] == TIGHT
+    def n(self) -> int:
+        """Its number of vertices."""
+        return sum(map(len, self.rope.curve))
 
     @property
     def dl(self) -> float:
         """Its edge length, in radii."""
         return float(self.row["dl"] or 0) / float(self.row["r_s"] or 1)
 
-    @property
-    def length(self) -> float:
-        """Its L_a."""
-        return float(self.row["l_a"] or math.inf)
-
 
 class _Hunt:
     """A search job under way."""
 
     def __init__(self, job: SearchJob, file: VertexFile, show: Show) -> None:
-        """Begin, or go on from the checkpoint. Raises `FormatError`."""
+        """Prepare the search of the curve in a file."""
         self.job = job
+        self.file = file
         self.show = show
         self.over = False
         self.named = job.source if sources.is_name(job.source) else None
-        measure(file.components)  # refuses a curve that crosses itself
-        self.source = Source.of(file.components, self.named)
-        self.search = Search(job.seed)
+        self.search = Search(job.seed, max(KEPT, job.minima))
         self.seconds = 0.0
-        self.restore()
-        self.begun = time.monotonic() - self.seconds
+        self.begun = time.monotonic()
         self.delivered: tuple[Minimum, str] | None = None
-        self.earlier = self.left_earlier() if job.resume else None
+        self.earlier: _Earlier | None = None
 
     def results(self) -> Iterator[Result]:
         """Search, and give a row for each of the shortest minima at the end."""
-        search, job, earlier = self.search, self.job, self.earlier
-        if earlier and self.is_enough(earlier):
-            yield Result(earlier.row)
-            return
-        try:  # at once, so that it is known before hours are spent
-            self.save()
-        except FormatError as error:
-            yield Result(None, f"{error}; it goes on without a checkpoint")
-        stopped = None
+        search, job = self.search, self.job
+        stopped, minima = None, list[Minimum]()
         try:
-            rounds = takewhile(self.time_is_left, search.rounds(job.trials or ENDLESS))
-            for _ in search.run(self.source, rounds, self.submit):
+            source = self.begin()
+            search = self.search
+            if self.earlier and self.is_enough(self.earlier):
+                yield Result(self.earlier.row)
+                return
+            try:  # at once, so that it is known before hours are spent
+                self.save()
+            except FormatError as error:
+                yield Result(None, f"{error}; it goes on without a checkpoint")
+            for _ in search.run(source, job.trials or ENDLESS, self.submit, job.workers.count):
                 with suppress(FormatError):  # a full disk may have room again before the search ends
                     if not is_stream(job.output):
                         self.deliver(search.minima[:1], STOPPED)
                     self.save()
-            minima = self.finished(search.minima[: job.minima])
+            minima = self.finished(source, search.minima[: job.minima]) or self.unrefined()
+        except OutOfTime:  # it had not begun
+            pass
         except Stopped as why:
             stopped = str(why)
-            minima = search.minima[: job.minima] or [_unrefined(shape) for shape in search.shapes[:1]]
+            minima = search.minima[: job.minima] or self.unrefined()
         finally:
             self.over = True
         self.delivered = None  # its header is to tell of all trials
+        unfinished = stopped is not None or not search.minima
         try:
-            self.deliver(minima[:1], STOPPED if stopped else None)
+            self.deliver(minima[:1], STOPPED if unfinished else None)
         except FormatError as error:
             yield Result(None, str(error))
-        yield from self.rows(minima, stopped)
+        yield from self.rows(minima, unfinished)
         yield from self.troubles(minima, stopped)
 
-    def left_earlier(self) -> _Earlier | None:
+    def begin(self) -> Source:
+        """Look at the curve, at the checkpoint and at the output. Raises `FormatError` and `ValueError`."""
+        curve = self.file.components
+        source = patiently(partial(Source.of, curve, self.named, self.look), self.look)
+        self.restore(source)
+        if self.job.resume:
+            self.earlier = self.left_earlier(source)
+        return source
+
+    def unrefined(self) -> list[Minimum]:
+        """Return the best shape of a search that ended before any was refined."""
+        return [
+            Minimum(shape.variant, shape.length, False, None, shape.curve, [shape.radii], shape.hits)
+            for shape in self.search.shapes[:1]
+            if shape.curve
+        ]
+
+    def left_earlier(self, source: Source) -> _Earlier | None:
         """Return what is in the output, if there is any. Raises `FormatError` for another knot."""
         output = self.job.output
         if not os.path.isfile(output):
             return None
         file, measures = measured(output)
-        if fingerprint(file.components) != self.source.type:
+        if patiently(partial(fingerprint, file.components), self.look) != source.type:
             raise FormatError(
                 f"{output}: is another knot than {self.job.name}; move it away or name another -o"
             )
-        residual = forces(file.components).residual
-        status = TIGHT if residual <= KEPT_RESIDUAL else STOPPED
-        row = as_row(self.job.name, output, measures, status=status, residual=residual)
+        residual = patiently(partial(forces, file.components), self.look).residual
+        tight = residual <= KEPT_RESIDUAL
+        row = as_row(self.job.name, output, measures, status=TIGHT if tight else STOPPED, residual=residual)
+        rope = Minimum(0, measures.l_a or math.inf, tight, residual, file.components, [])
         work = _SEARCHED.search(formats.load(output)[1])
         if not work:
-            return _Earlier(row)
-        variant, seed, hits, trials, seconds = map(int, work.groups())
-        return _Earlier({**row, "variant": variant, "hits": hits, "trials": trials}, seed, trials, seconds)
+            return _Earlier(row, rope)
+        variant, seed, hits, trials, seconds = map(int, work.groups()[:5])
+        limit = float(work[6] or seconds)
+        return _Earlier(
+            {**row, "variant": variant, "hits": hits, "trials": trials}, rope, seed, trials, limit
+        )
 
     def is_enough(self, earlier: _Earlier) -> bool:
         """Tell whether the earlier search was finished and did what this one is to do."""
-        job = self.job
-        done = earlier.trials >= (job.trials or ENDLESS) or earlier.seconds >= (job.time_limit or math.inf)
-        same = earlier.seed == job.seed and same_edges(earlier.dl, job.dl)
-        return done and same and earlier.tight and says_tight(job.output)
+        job, rope = self.job, earlier.rope
+        done = earlier.trials >= (job.trials or ENDLESS) or earlier.limit >= (job.time_limit or math.inf)
+        same = earlier.seed == job.seed and has_edges(earlier.n, rope.length, job.dl)
+        return done and same and rope.tight and says_tight(job.output)
 
     def is_worse(self, minimum: Minimum) -> bool:
-        """Tell whether the rope that is in the output is to stay there."""
+        """Tell whether the rope that is in the output is to stay there: both are compared on the finer edges.
+
+        The finer rope stays unless the other one is another, shorter minimum.
+        """
         earlier, dl = self.earlier, measure(minimum.curve).dl
         if not earlier:
             return False
-        if earlier.tight and not minimum.tight:
+        if earlier.rope.tight and not minimum.tight:
             return True
+        old, new = earlier.rope, minimum
         if same_edges(earlier.dl, dl):
-            return minimum.length > earlier.length * (1 + SAME_ROPE)
-        # The finer rope stays, unless the other's is another minimum.
-        blur = _blur(max(earlier.dl, dl))
-        return minimum.length >= earlier.length * (1 + blur if dl < earlier.dl else 1 - blur)
+            return new.length > old.length * (1 + SAME_ROPE)
+        coarse, fine = (old, dl) if dl < earlier.dl else (new, earlier.dl)
+        finer = self.finer(coarse, round(coarse.length / fine))
+        if not finer:
+            return True
+        if coarse is old:
+            return new.length > finer.length * (1 + SAME_LENGTH)
+        return finer.length > old.length * (1 - SAME_LENGTH)
 
-    def finished(self, minima: list[Minimum]) -> list[Minimum]:
+    def finer(self, minimum: Minimum, n: int) -> Minimum | None:
+        """Polish a rope on n vertices, for which a search that is over has only a moment."""
+        polished = partial(finish, minimum, n, self.look)
+        if not self.over:
+            return patiently(polished, self.look)
+        with suppress(Stopped):
+            return within(MOMENT, partial(finish, minimum, n))
+        return None
+
+    def finished(self, source: Source, minima: list[Minimum]) -> list[Minimum]:
         """Polish minima with the edges that were asked for; return them with the shortest first."""
         dl = self.job.dl
         if dl != FINE_EDGE:
             waiting = [self.submit(finish, minimum, round(minimum.length / dl)) for minimum in minima]
-            finer = [self.search.confirmed(minimum(), self.source) for minimum in waiting]
-            minima = [new or old for new, old in zip(finer, minima, strict=True)]
+            finer = []
+            with suppress(OutOfTime):
+                for minimum in waiting:
+                    finer.append(self.search.confirmed(minimum(), source))
+            minima = [new or old for new, old in zip_longest(finer, minima)]
+            # Minima are compared on edges of one length.
+            minima = list(filter(self.has_edges, minima)) or minima
         return sorted(minima, key=rank)
 
-    def submit(self, function: Callable[..., Any], *args: Any) -> Callable[[], Any]:
-        """Have a function done by the workers."""
-        return self.job.workers.submit(function, *args, watch=self.look)
+    def has_edges(self, minimum: Minimum) -> bool:
+        """Tell whether a rope has the edges that were asked for."""
+        return has_edges(sum(map(len, minimum.curve)), minimum.length, self.job.dl)
 
-    def look(self) -> None:
-        """Show the search, and stop it when it is time to."""
+    def submit(self, function: Callable[..., Any], *args: Any, rank: int | None = None) -> Callable[[], Any]:
+        """Have a function done by the workers; a trial ends when time is left for no more than refining."""
+        finishing = FINISHING if function is not finish and self.job.dl != FINE_EDGE else 0
+        refining = REFINING if rank is not None else 0
+        watch = partial(self.look, finishing + refining)
+        return self.job.workers.submit(function, *args, watch=watch, rank=-1 if rank is None else rank)
+
+    def look(self, reserved: float = 0) -> None:
+        """Show the search, and stop it when it is time to, of which a share may be `reserved`."""
         if self.over:
             raise Stopped("the search is over")
         search, job = self.search, self.job
@@ -223,14 +300,13 @@ class _Hunt:
         parts += [self.now() / job.time_limit] if job.time_limit else []
         best = f" L_a {search.minima[0].length:.4f}" if search.minima else ""
         self.show(min(max(parts, default=0), 1), f"{search.trials} trials{best}")
+        limit = job.time_limit or math.inf
+        if self.now() > limit - reserved * min(limit, LONGEST_LIMIT):
+            raise OutOfTime
 
     def now(self) -> float:
         """Return the seconds spent on this search, those before it was resumed included."""
         return time.monotonic() - self.begun
-
-    def time_is_left(self, _: range) -> bool:
-        """Tell whether to begin another round."""
-        return self.now() < (self.job.time_limit or math.inf)
 
     def deliver(self, best: list[Minimum], status: str | None) -> None:
         """Write the shortest minimum, unless it is written or the output has a better rope.
@@ -244,26 +320,31 @@ class _Hunt:
             comments = [
                 *title(self.job.name, status, measure(minimum.curve)),
                 f"searched: variant {minimum.variant}, seed {self.search.seed}, met in {minimum.hits} of "
-                f"{self.search.trials} trials, {self.now():.0f} s",
-                f"residual {minimum.residual:.1e}",
+                f"{self.search.trials} trials, {self.now():.0f} s{self.limit()}",
+                *([] if minimum.residual is None else [f"residual {minimum.residual:.1e}"]),
             ]
             formats.write(self.job.output, minimum.curve, comments)
             self.earlier, self.delivered = None, (minimum, status)
 
-    def rows(self, minima: list[Minimum], stopped: str | None) -> Iterator[Result]:
+    def limit(self) -> str:
+        """Say for the header of a file after which time the search was over, if that is why it ended."""
+        limit, trials = self.job.time_limit, self.job.trials or ENDLESS
+        return f" of {limit:g} s" if limit and self.search.trials < trials else ""
+
+    def rows(self, minima: list[Minimum], unfinished: bool) -> Iterator[Result]:
         """Give a row for what is in the output, and for each of the other minima."""
         if self.earlier:
             yield Result(self.earlier.row)
         for minimum in minima:
-            yield Result(self.row(minimum, stopped))
+            yield Result(self.row(minimum, unfinished))
 
-    def row(self, minimum: Minimum, stopped: str | None) -> Row:
+    def row(self, minimum: Minimum, unfinished: bool) -> Row:
         """Give the row of a minimum."""
         output = self.job.output if self.delivered and self.delivered[0] is minimum else None
         measures = measured(output)[1] if output and not is_stream(output) else measure(minimum.curve)
         work = {key: getattr(minimum, key) for key in ("residual", "hits", "variant")}
         more = work | {"trials": self.search.trials, "seconds": self.now()}
-        status = STOPPED if stopped else _status(minimum)
+        status = STOPPED if unfinished else _status(minimum)
         return as_row(self.job.name, output, measures, status=status, **more)
 
     def troubles(self, minima: list[Minimum], stopped: str | None) -> Iterator[Result]:
@@ -282,10 +363,19 @@ class _Hunt:
                 place = f"the best of {search.trials} trials {which} {self.job.output}"
             way_on = f"; {self.job.way_on}" if self.job.checkpoint and not unsaved else ""
             yield Result(None, f"{name}: {stopped}; {place}{way_on}")
-        elif not minima:
+        elif not minima and search.trials:
             yield Result(None, f"{name}: none of {search.trials} trials could be tightened")
+        elif not search.minima:
+            what = (
+                f"a rope was refined; the best so far is in {self.job.output}" if minima else "a trial ended"
+            )
+            yield Result(
+                None, f"{name}: the time limit of {self.job.time_limit:g} s was reached before {what}"
+            )
         elif not minima[0].tight:
             yield Result(None, f"{name}: its shortest rope did not get tight")
+        elif not self.has_edges(minima[0]):
+            yield Result(None, f"{name}: its ropes did not come to edges of {self.job.dl:g}")
         if unsaved:
             yield Result(None, f"{name}: {unsaved}")
         if search.changed:
@@ -294,64 +384,53 @@ class _Hunt:
             note = f"{name}: {search.failed} of {search.trials} starts could not be tightened"
             yield Result(None, note=note)
 
-    def restore(self) -> None:
-        """Take the search up where the checkpoint has it."""
+    def restore(self, source: Source) -> None:
+        """Take the search up where the checkpoint has it. Raises `FormatError`."""
         path = self.job.checkpoint
         if not (self.job.resume and path and path.exists()):
             return
+        state = checkpoints.load(path, KIND)
         try:
-            state = json.loads(path.read_text(encoding="utf-8"))
-            same = state.pop("identity") == self.identity()
-            self.seconds = float(state.pop("seconds"))
-            self.search = Search.restore(state)
-        except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-            raise FormatError(f"{path}: is no checkpoint of a search ({error}); remove it") from error
+            same = state["identity"] == self.identity()
+            seconds = float(state["seconds"])
+            search = patiently(partial(Search.restore, state["search"]), self.look)
+        except (LookupError, TypeError, AttributeError, *FAILURES) as error:
+            raise FormatError(f"{path}: holds no state of a search ({error}); remove it") from error
         if not same:
             raise FormatError(f"{path}: is of another knot or seed; repeat those or remove it")
+        search.minima = [minimum for minimum in search.minima if search.confirmed(minimum, source)]
+        search.kept = max(search.kept, self.job.minima)
+        self.search, self.seconds = search, seconds
+        self.begun -= seconds
 
     def save(self) -> None:
         """Write the checkpoint, if there is to be one. Raises `FormatError`."""
         if self.job.checkpoint:
-            state = self.search.state() | {"identity": self.identity(), "seconds": self.now()}
-            formats.save(os.fspath(self.job.checkpoint), json.dumps(state))
+            state = {"identity": self.identity(), "seconds": self.now(), "search": self.search.state()}
+            checkpoints.save(self.job.checkpoint, KIND, state)
 
     def identity(self) -> list[str]:
         """Return what must be the same for a checkpoint to be continued."""
         if self.named:
             return [self.named, str(self.job.seed)]
         digest = hashlib.sha256()
-        for component in self.source.curve:
+        for component in self.file.components:
             digest.update(component.tobytes() + b"end of component")
         return [digest.hexdigest(), str(self.job.seed)]
 
 
-def spent(checkpoints: Iterable[Path | None]) -> str:
+def spent(paths: Iterable[Path | None]) -> str:
     """Tell what the searches of these checkpoints took in all, and how often a trial changed the type."""
     trials = changed = 0
     seconds = 0.0
-    for path in checkpoints:
-        with suppress(OSError, ValueError, LookupError, TypeError):  # searches that did not begin have none
-            state = json.loads(path.read_text(encoding="utf-8")) if path else {}
-            trials, changed = trials + state["trials"], changed + state["changed"]
+    for path in paths:
+        with suppress(FormatError, LookupError, TypeError):  # searches that did not begin have none
+            state = checkpoints.load(path, KIND) if path else {}
+            search = state["search"]
+            trials, changed = trials + search["trials"], changed + search["changed"]
             seconds += state["seconds"]
     hours = seconds / 3600
     return f"trials: {trials}, of which {changed} changed their knot type; hours of search: {hours:.2f}"
-
-
-def _unrefined(shape: Shape) -> Minimum:
-    """Return a shape as the best there is of a search that was stopped early."""
-    assert shape.curve is not None
-    residual = forces(shape.curve).residual
-    return Minimum(shape.variant, shape.length, False, residual, shape.curve, [shape.radii], shape.hits)
-
-
-def _blur(dl: float) -> float:
-    """Return the relative difference in L_a that edges of this length may make to one minimum.
-
-    Two ropes with edges of 0.2 differ by SAME_LENGTH at most; among 551 minima no rope with edges of 0.45 was
-    shorter by more than 2e-3 than it became on finer ones.
-    """
-    return SAME_LENGTH * (dl / FINE_EDGE) ** 3
 
 
 def _status(minimum: Minimum) -> str:

@@ -3,12 +3,16 @@
 Both give the same results, since what they do are pure functions.
 """
 
+import threading
 from collections.abc import Callable
-from concurrent.futures import CancelledError, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import suppress
+from heapq import heappop, heappush
+from itertools import count as counting
 from types import TracebackType
 from typing import Any, Protocol, Self, TypeVar, cast
 
+from sono.patience import awaited
 from sono.pipeline import Stopped
 
 Result = TypeVar("Result")
@@ -26,11 +30,12 @@ class Workers(Protocol):
     count: int
 
     def submit(
-        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
+        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None], rank: int = 0
     ) -> Callable[[], Result]:
         """Begin a function; what is returned waits for its result. It raises `Stopped` if they are lost.
 
-        `watch` is called about ten times a second meanwhile; what it raises ends the work and the waiting.
+        Of what has not begun that of the least `rank` comes first. `watch` is called about ten times a second
+        meanwhile; what it raises ends the work and the waiting.
         """
 
 
@@ -41,20 +46,40 @@ class Threads:
         """Keep so many threads."""
         self.count = count
         self.pool = ThreadPoolExecutor(count)
+        self.lock = threading.Lock()
+        self.order = counting()
+        self.waiting: list[tuple[int, int, Callable[[], Any], Future[Any]]] = []
 
     def submit(
-        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
+        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None], rank: int = 0
     ) -> Callable[[], Result]:
-        """Begin a function in the next free thread."""
-        return self.pool.submit(function, *args, watch).result
+        """Have a free thread do a function."""
+
+        def call() -> Result:
+            watch()  # it may be over before it has begun
+            return function(*args, watch)
+
+        future: Future[Result] = Future()
+        with self.lock:
+            heappush(self.waiting, (rank, next(self.order), call, future))
+        self.pool.submit(self._do_the_next)
+        return lambda: awaited(future, watch)
+
+    def _do_the_next(self) -> None:
+        with self.lock:
+            _, _, call, future = heappop(self.waiting)
+        try:
+            future.set_result(call())
+        except BaseException as error:
+            future.set_exception(error)
 
     def __enter__(self) -> Self:
         """Return the workers."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Forget what has not begun, and wait for the rest."""
-        self.pool.shutdown(cancel_futures=True)
+        """Forget what has not begun."""
+        self.pool.shutdown(wait=False, cancel_futures=True)
 
 
 class Cluster:
@@ -78,12 +103,12 @@ class Cluster:
         self.count = max(sum(threads.values()), 1)
 
     def submit(
-        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None]
+        self, function: Callable[..., Result], *args: Any, watch: Callable[[], None], rank: int = 0
     ) -> Callable[[], Result]:
         """Begin a function on some worker."""
         from distributed.comm.core import CommClosedError
 
-        future = self.client.submit(function, *args, pure=False)
+        future = self.client.submit(function, *args, pure=False, priority=-rank)
 
         def wait() -> Result:
             try:

@@ -19,7 +19,7 @@ COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
 @click.option(
     "--trials", type=click.IntRange(1, 10**6), help="Starts to try.  [default: 64, or until the time limit]"
 )
-@options.time_limit("Begin no further round of trials of a knot after this time.")
+@options.time_limit("End the search of each knot after this time, the last part of which is for refining.")
 @click.option(
     "--dl",
     type=options.Number(0.005, 0.5),
