@@ -10,6 +10,7 @@ import pytest
 from conftest import Sono, Spawn, vertices
 
 from sono import checkpoints, formats, library, measure, search, searches, tables
+from sono.invariants import fingerprint
 
 PROMPT = 8
 """Seconds, four times what a stop may take on a machine with nothing else to do."""
@@ -286,6 +287,19 @@ def test_a_finished_file_of_another_knot_or_edge_length_is_not_kept(folder: Path
     other = sono("search", "4_1", *ONE, "-o", "3_1.tight.txt", "--resume")
     assert (other.exit_code, (folder / "3_1.tight.txt").read_text()) == (1, before)
     assert "3_1.tight.txt: is another knot than 4_1; move it away" in other.stderr
+
+
+def test_a_knot_with_the_same_invariants_is_another_knot(folder: Path, sono: Sono) -> None:
+    assert fingerprint(library.start("8_8")) == fingerprint(library.start("10_129"))
+    assert sono("search", "8_8", *ONE, "--dl", "0.5", "-o", "one.txt").exit_code == 0
+    before = (folder / "one.txt").read_text()
+    other = sono("search", "10_129", *ONE, "--dl", "0.5", "-o", "one.txt", "--resume")
+    assert (other.exit_code, len(other.stdout.splitlines())) == (1, 1)
+    assert "one.txt: was found from another curve than 10_129; move it away" in other.stderr
+    assert (folder / "one.txt").read_text() == before
+    # A rope that somebody else made is only known by its invariants.
+    (folder / "one.txt").write_text(vertices(folder / "one.txt"))
+    assert sono("search", "8_8", *ONE, "--dl", "0.5", "-o", "one.txt", "--resume").exit_code == 0
 
 
 @pytest.mark.slow

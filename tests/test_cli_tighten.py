@@ -372,6 +372,59 @@ def test_resume_does_not_take_another_file_for_a_result(folder: Path, sono: Sono
     assert (folder / "3_1.n60.txt").read_text() == "mine"
 
 
+@pytest.mark.parametrize(
+    ("change", "line", "why"),
+    [
+        ("4_1", (), "is of another curve, method or setting; repeat those or move it away"),
+        ("m3_1", (), "is of another curve, method or setting"),
+        ("", ("--method", "sono"), "is of another curve, method or setting"),
+        ("", ("--method", "polish"), "is of another curve, method or setting"),
+        ("", ("--seed", "1"), "is of another curve, method or setting"),
+        ("", ("--trials", "2"), "is of another curve, method or setting"),
+        ("vertex", (), "is not as it was written; move it away, or --force starts anew"),
+        ("swap", (), "is not as it was written"),
+        ("header", (), "is of another curve, method or setting"),
+        ("end", (), "has 59 vertices, not n = 60"),
+    ],
+)
+@pytest.mark.parametrize("suffix", ["txt", "vect"])
+def test_resume_takes_no_output_of_another_job(
+    folder: Path, sono: Sono, change: str, line: tuple[str, ...], why: str, suffix: str
+) -> None:
+    output = folder / f"tight.{suffix}"
+    job = ("tighten", "3_1.txt", "-n", "60", *QUICK, "-o", output.name)
+    assert sono(*job).exit_code == 0
+    again = sono(*job, "--resume")
+    assert (again.exit_code, again.stderr) == (0, "")
+    head, *rows = re.split(r"^(?=-?\d\S+ \S+ \S+\n)", output.read_text(), flags=re.MULTILINE)
+    if change in ("4_1", "m3_1"):
+        formats.write("3_1.txt", library.start(change))
+    elif change == "vertex":
+        x, rest = rows[7].split(" ", 1)
+        rows[7] = f"{float(x) + 1e-6} {rest}"
+    elif change == "swap":
+        rows[7], rows[8] = rows[8], rows[7]
+    elif change == "end":
+        formats.write(output.name, [formats.read(output.name).components[0][:-1]])
+    elif change == "header":
+        head = head.replace("# input", "# output")
+    if change != "end":
+        output.write_text("".join((head, *rows)))
+    written = output.read_bytes()
+    result = sono(*job, *line, "--resume")
+    assert (result.exit_code, len(result.stdout.splitlines())) == (1, 1)
+    assert result.stderr.startswith(f"sono: {output.name}: {why}")
+    assert output.read_bytes() == written
+
+
+def test_resume_keeps_what_sono_alone_left(folder: Path, sono: Sono) -> None:
+    line = ("tighten", "3_1.txt", "-n", "60", "--method", "sono", "--set", "anneal_sweeps=5000")
+    first = sono(*line)
+    assert first.stdout.splitlines()[1].endswith("\tsettled")
+    again = sono(*line, "--resume")
+    assert (again.exit_code, again.stdout, again.stderr) == (0, first.stdout, "")
+
+
 def until_first_row(process: subprocess.Popen[str]) -> None:
     """Wait for the row of the first n: from then on the run is at the next."""
     assert process.stdout

@@ -112,14 +112,15 @@ class SentJob:
     def results(self, show: Callable[[float, str], None]) -> "Iterator[Result]":
         """Do the job, giving its rows when all of it has come back. `show` may raise `Stopped`."""
         job = self.job
-        kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
-        for n in kept:
-            yield _kept(job, n)
-        outputs = {n: output for n, output in job.outputs.items() if n not in kept}
-        if not outputs:
-            return
         try:
             content = formats.load(job.source) if not sources.is_name(job.source) else None
+            file = formats.parse(*content) if content else sources.read(job.source)
+            kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
+            for n in kept:
+                yield _kept(job, file, n)
+            outputs = {n: output for n, output in job.outputs.items() if n not in kept}
+            if not outputs:
+                return
             sent = replace(job, outputs=outputs, resume=False)
             free = {path: free_name(path) for path in outputs.values()}
             waiting = self.workers.submit(_away, sent, content, free, watch=lambda: show(0, "on the cluster"))
@@ -176,7 +177,7 @@ def run(job: Job, watch: Callable[[Progress], None]) -> Iterator[Result]:
         yield from (Result(None, note=doubt) for doubt in file.doubts())
         kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
         for n in kept:
-            yield _kept(job, n)
+            yield _kept(job, file, n)
         if todo := set(job.outputs) - set(kept):
             yield from _Task(job, file, todo).results(watch)
     except FormatError as error:
@@ -236,18 +237,24 @@ def _told(show: Callable[[float, str], None], progress: Progress) -> None:
     show(status.progress, what)
 
 
-def _kept(job: Job, n: int) -> Result:
-    """Give the row of an output that is there from an earlier run."""
+def _kept(job: Job, file: VertexFile, n: int) -> Result:
+    """Give the row of an output that is there from an earlier run of the same job."""
     output = job.outputs[n]
     try:
-        file, measures = measured(output)
-        fitted = None if job.method == "sono" else forces(file.components)
+        rope, measures = measured(output)
+        if measures.n != n:
+            raise FormatError(f"{output}: has {measures.n} vertices, not n = {n}; move it away")
+        comments = formats.load(output)[1].splitlines()
+        if f"# {_origin(job, file)}" not in comments:
+            other = "is of another curve, method or setting"
+            raise FormatError(f"{output}: {other}; repeat those or move it away, or --force starts anew")
+        if f"# {_figures(measures)}" not in comments:
+            raise FormatError(f"{output}: is not as it was written; move it away, or --force starts anew")
+        fitted = None if job.method == "sono" else forces(rope.components)
         if fitted and n in job.forces and not os.path.isfile(job.forces[n]):
-            contacts.write(job.forces[n], file.components, fitted)
+            contacts.write(job.forces[n], rope.components, fitted)
     except FormatError as error:
         return Result(None, str(error))
-    if measures.n != n:
-        return Result(None, f"{output}: has {measures.n} vertices, not n = {n}; move it away")
     good = max(measures.dispersion, abs(1 - measures.r_s)) <= _tolerance(job)
     if fitted is None:
         return _judged(job, _rope_row(job, output, measures, SETTLED if good else STUCK))
@@ -276,7 +283,7 @@ class _Task:
         self.job = job
         self.file = file
         self.todo = todo
-        self.identity = _identity(job, file)
+        self.identity = [_origin(job, file), *job.outputs]
         self.told = False
         self.failed: dict[int, str] = {}
         self.run = self.restored() or self.begun()
@@ -376,7 +383,7 @@ class _Task:
         """Write vertices and measure what was written; if that fails, say why, and measure what there is."""
         measures, unwritten = tight.measures, None
         try:
-            formats.write(output, tight.curve, _header(self.job, tight, status))
+            formats.write(output, tight.curve, _header(self.job, self.file, tight, status))
             # The file has every digit; reading it again would only make a stop wait.
             if not is_stream(output) and status != STOPPED:
                 measures = measured(output)[1]
@@ -481,23 +488,25 @@ def _trials(tight: Tight) -> int:
     return max(len(tight.shapes) + len(tight.failed), 1)
 
 
-def _header(job: Job, tight: Tight, status: str) -> list[str]:
+def _header(job: Job, file: VertexFile, tight: Tight, status: str) -> list[str]:
     physics = (f"{key} {value:.1e}" for key in PHYSICS if (value := getattr(tight, key)) is not None)
     return [
         *title(job.name, status, tight.measures),
         f"method {job.method}  trials {_trials(tight)}  settings {json.dumps(job.settings)}",
         "  ".join(physics) or "not polished",
+        _origin(job, file),
     ]
 
 
 def title(name: str, status: str, m: Measures) -> list[str]:
     """Return the comments that a file of a rope begins with."""
     name = printable(name.encode(errors="replace").decode())  # a file's name need not be text
+    return [f"{name}: {status}, rope radius R_s = 1", _figures(m)]
+
+
+def _figures(m: Measures) -> str:
     l_c, l_a = (f"{value:.8f}" if value is not None else "-" for value in (m.l_c, m.l_a))
-    return [
-        f"{name}: {status}, rope radius R_s = 1",
-        f"n {m.n}  dl {m.dl:.8f}  L_p {m.l_p:.8f}  L_c {l_c}  L_a {l_a}  (length over radius)",
-    ]
+    return f"n {m.n}  dl {m.dl:.8f}  L_p {m.l_p:.8f}  L_c {l_c}  L_a {l_a}  (length over radius)"
 
 
 def free_name(output: str) -> str:
@@ -512,12 +521,14 @@ def _names_of_best(output: str) -> Iterator[str]:
     return (os.fspath(path.with_suffix(f".best{k}{path.suffix}")) for k in chain([""], count(2)))
 
 
-def _identity(job: Job, file: VertexFile) -> str:
-    """Return what must be the same for a checkpoint to be continued: curve, targets, method and settings."""
-    digest = hashlib.sha256(
-        json.dumps([list(job.outputs), job.method, job.trials, job.settings], sort_keys=True).encode()
-    )
+def _origin(job: Job, file: VertexFile) -> str:
+    """Tell what a rope is made from: its curve, method and settings, as a digest."""
+    return f"input and settings: {digest(file, job.method, job.trials, job.settings)}"
+
+
+def digest(file: VertexFile, *settings: Any) -> str:
+    """Return what tells a curve, and settings, from others."""
+    found = hashlib.sha256(json.dumps(settings, sort_keys=True).encode())
     for component in file.components:
-        digest.update(component.tobytes())
-        digest.update(b"end of component")
-    return digest.hexdigest()
+        found.update(component.tobytes() + b"end of component")
+    return found.hexdigest()[:32]

@@ -1,6 +1,5 @@
 """One knot's search as a job of a batch: its files, its checkpoint, its rows."""
 
-import hashlib
 import math
 import os
 import re
@@ -21,6 +20,7 @@ from sono.batch import (
     TIGHT,
     Result,
     as_row,
+    digest,
     measured,
     says_tight,
     title,
@@ -43,7 +43,7 @@ from sono.search import (
     rank,
     same_edges,
 )
-from sono.tables import Row
+from sono.tables import Row, printable
 from sono.workers import Workers
 
 ENDLESS = 10**6
@@ -65,6 +65,7 @@ SAME_ROPE = 1e-8
 
 Show = Callable[[float, str], None]
 
+_INPUT = re.compile(r"^# input: (.+)$", re.MULTILINE)
 _SEARCHED = re.compile(
     r"^# searched: variant (-?\d+), seed (\d+), met in (\d+) of (\d+) trials, (\d+) s(?: of (\S+) s)?$",
     re.MULTILINE,
@@ -212,15 +213,19 @@ class _Hunt:
         if not os.path.isfile(output):
             return None
         file, measures = measured(output)
+        text = formats.load(output)[1]
+        # Invariants do not tell all knots apart; where the file says what it was made from, that has to fit.
+        origin = _INPUT.search(text)
+        why = "was found from another curve" if origin and origin[1] != self.origin() else None
         if patiently(partial(fingerprint, file.components), self.look) != source.type:
-            raise FormatError(
-                f"{output}: is another knot than {self.job.name}; move it away or name another -o"
-            )
+            why = "is another knot"
+        if why:
+            raise FormatError(f"{output}: {why} than {self.job.name}; move it away or name another -o")
         residual = patiently(partial(forces, file.components), self.look).residual
         tight = residual <= KEPT_RESIDUAL
         row = as_row(self.job.name, output, measures, status=TIGHT if tight else STOPPED, residual=residual)
         rope = Minimum(0, measures.l_a or math.inf, tight, residual, file.components, [])
-        work = _SEARCHED.search(formats.load(output)[1])
+        work = _SEARCHED.search(text)
         if not work:
             return _Earlier(row, rope)
         variant, seed, hits, trials, seconds = map(int, work.groups()[:5])
@@ -322,6 +327,7 @@ class _Hunt:
                 f"searched: variant {minimum.variant}, seed {self.search.seed}, met in {minimum.hits} of "
                 f"{self.search.trials} trials, {self.now():.0f} s{self.limit()}",
                 *([] if minimum.residual is None else [f"residual {minimum.residual:.1e}"]),
+                f"input: {self.origin()}",
             ]
             formats.write(self.job.output, minimum.curve, comments)
             self.earlier, self.delivered = None, (minimum, status)
@@ -411,12 +417,11 @@ class _Hunt:
 
     def identity(self) -> list[str]:
         """Return what must be the same for a checkpoint to be continued."""
-        if self.named:
-            return [self.named, str(self.job.seed)]
-        digest = hashlib.sha256()
-        for component in self.file.components:
-            digest.update(component.tobytes() + b"end of component")
-        return [digest.hexdigest(), str(self.job.seed)]
+        return [self.origin(), str(self.job.seed)]
+
+    def origin(self) -> str:
+        """Return the knot's name, or a digest of its curve."""
+        return printable(self.named) if self.named else digest(self.file)
 
 
 def spent(paths: Iterable[Path | None]) -> str:

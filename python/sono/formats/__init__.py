@@ -26,6 +26,7 @@ __all__ = [
     "by_suffix",
     "is_stream",
     "load",
+    "parse",
     "read",
     "save",
     "write",
@@ -57,7 +58,11 @@ def read(source: str | os.PathLike[str]) -> VertexFile:
     Every component has at least three vertices, finite coordinates and no two equal neighbours; a last vertex
     that repeats the first is dropped. Lengths keep the file's unit. Raises `FormatError`.
     """
-    name, content = load(source)
+    return parse(*load(source))
+
+
+def parse(name: str, content: str) -> VertexFile:
+    """Read the text of a curve file, likewise; `name` is for messages, and its suffix counts."""
     known = "vect" if _suffix(name) == ".vect" or vect.recognises(content) else "text"
     return FORMATS[known].read(content, name)
 
