@@ -44,6 +44,14 @@ def test_list(sono: Sono) -> None:
     assert sono("start", "--list").stdout.split() == list(library.names())
 
 
+def test_a_name_that_is_too_long(sono: Sono) -> None:
+    name = "k" * 5000
+    result = sono("start", "3_1", "-o", name)
+    assert (result.exit_code, result.stderr) == (1, f"sono: {name}: cannot be written: File name too long\n")
+    assert f"{name}/atlas.tsv: no such file" in sono("atlas", "--folder", name).stderr.replace("\n", "")
+    assert sono("atlas", name, "--folder", ".").exit_code == 2
+
+
 def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
     (folder / "out.txt").write_text("mine")
     result = sono("start", "3_1", "-o", "out.txt")

@@ -132,6 +132,7 @@ def test_files_are_not_overwritten(folder: Path, sono: Sono) -> None:
         (["3_1.txt", "--seed", "-1"], "-1 is not in the range"),
         (["3_1.txt", "--seed", str(2**64)], f"{2**64} is not in the range"),
         (["3_1.txt", "--jobs", "0"], "0 is not in the range"),
+        (["3_1.txt", "--jobs", "9" * 20], "is not in the range 1<=x<=256"),
         (["3_1.txt", "--time-limit", "0"], "0.0 is no number of seconds above 0"),
         (["3_1.txt", "--time-limit", "nan"], "nan is no number of seconds above 0"),
         (["3_1.txt", "--time-limit", "inf"], "inf is no number of seconds above 0"),

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -180,3 +181,33 @@ def test_a_long_name_that_fits(folder: Path, sono: Sono) -> None:
     name = "k" * 246 + ".txt"
     assert sono("tighten", "3_1", "-n", "60", *QUICK, "-o", name).exit_code == 0
     assert len(formats.read(name).components[0]) == 60
+
+
+@posix
+def test_a_name_that_is_tried_is_never_there(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is killed while it tries names leaves no empty file that --resume would take for a rope."""
+    made: list[str] = []
+    create = os.open
+
+    def spy(path: str | Path, flags: int, mode: int = 0o777) -> int:
+        if flags & os.O_CREAT:
+            made.append(os.path.basename(path))
+        return create(path, flags, mode)
+
+    monkeypatch.setattr(os, "open", spy)
+    options = ("--contacts", "forces/", "--checkpoint", "kept", "-o", "out/")
+    assert sono("tighten", "3_1.txt", "Hopf.txt", "-n", "60", *QUICK, *options).exit_code == 0
+    assert made
+    assert all(name == NAME or re.fullmatch(r"\.sono-\w+\.part", name) for name in made)
+
+
+@posix
+@pytest.mark.parametrize("output", ["gone/rope.txt", "link.txt"])
+def test_a_link_into_nowhere_is_told_first(folder: Path, sono: Sono, output: str) -> None:
+    (folder / "link.txt").symlink_to("nowhere/rope.txt")
+    (folder / "gone").symlink_to("nowhere")
+    result = sono("tighten", "3_1.txt", "-n", "60", *QUICK, "-o", output)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "cannot be " in result.stderr

@@ -106,6 +106,12 @@ def test_the_seed_may_be_among_the_settings() -> None:
         sono.tighten(curve, 40, seed=5, settings={"seed": 5})
 
 
+@pytest.mark.parametrize("limit", [math.nan, -1, -math.inf])
+def test_a_time_limit_that_is_none(limit: float) -> None:
+    with pytest.raises(ValueError, match="is no number of seconds"):
+        sono.tighten(sono.start("3_1"), 60, time_limit=limit)
+
+
 @pytest.mark.parametrize(
     ("n", "settings", "message"),
     [

@@ -170,6 +170,8 @@ def tighten(
         if "seed" in settings:
             raise ValueError("the seed is given twice, as an argument and in the settings")
         settings = settings | {"seed": index(seed)}
+    if time_limit is not None and not time_limit >= 0:
+        raise ValueError(f"time_limit = {time_limit} is no number of seconds")
     run = Run(as_curve(vertices), [index(n)], settings, method, index(trials))
     end = math.inf if time_limit is None else time.monotonic() + time_limit
 

@@ -1,5 +1,6 @@
 """`sono atlas`: the shortest known tight rope of every knot, checked or improved."""
 
+import os
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -76,7 +77,7 @@ def command(
     atlas = Atlas(Path(folder))
     if "-" in sources:
         raise click.UsageError("standard input has no name; give a file NAME.txt")
-    if not update and not Path(folder, "atlas.tsv").exists():
+    if not update and not os.path.exists(os.path.join(folder, "atlas.tsv")):
         raise click.UsageError(f"{folder}/atlas.tsv: no such file; --folder says where, --update makes one")
     names = sources or [row["knot"] for row in library.table("knots")]
     options.tell_of_shadows(names, quiet)
@@ -84,7 +85,7 @@ def command(
         work = [
             _AtlasJob(
                 atlas,
-                options.knot_name(source).split(".")[0] if Path(source).is_file() else source,
+                options.knot_name(source).split(".")[0] if os.path.isfile(source) else source,
                 SearchJob(
                     source,
                     source,
@@ -97,9 +98,9 @@ def command(
                     resume=True,
                     way_on="the next --update goes on from here",
                 )
-                if update and not Path(source).is_file()
+                if update and not os.path.isfile(source)
                 else None,
-                source if Path(source).is_file() else None,
+                source if os.path.isfile(source) else None,
             )
             for source in names
         ]

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+MOST_JOBS = 256
+"""Threads of one process at most; shards and clusters go further."""
+
 
 def files(function: Function) -> Function:
     """The input files, `-` for standard input."""
@@ -99,7 +102,7 @@ def parallel(jobs_help: str) -> Callable[[Function], Function]:
             help="Have a Dask scheduler's workers do it, tcp://host:8786 say; needs the extra sono[cluster].",
         )(function)
         return click.option(
-            "-j", "--jobs", type=click.IntRange(1), default=1, show_default=True, help=jobs_help
+            "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, show_default=True, help=jobs_help
         )(function)
 
     return decorate
@@ -256,14 +259,18 @@ def _make_folder(folder: str) -> None:
 
 
 def _try(path: str) -> None:
-    """See that there can be a file of this name, leaving nothing behind."""
+    """See that there can be a file of this name, without making one, which might outlive the program."""
+    from sono import formats  # here, since numpy would make --help wait
+
     try:
         if os.path.isdir(path):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        if not os.path.exists(path):
-            there = os.path.realpath(path)
-            os.close(os.open(there, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
-            os.unlink(there)
+        with suppress(FileNotFoundError):
+            os.stat(path)  # which too long a name does not stand
+        if not formats.is_stream(path):
+            part = formats.part_of(path)
+            os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+            os.unlink(part)
     except OSError as error:
         raise click.UsageError(
             f"{path}: cannot be written: {error.strerror}; -o names another place"

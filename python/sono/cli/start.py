@@ -1,5 +1,6 @@
 """`sono start NAME`: starting conformations."""
 
+import os
 import sys
 
 import click
@@ -42,8 +43,6 @@ def command(
     has those that are built in.
     """
     # Imported here, since numpy would make --help wait.
-    from pathlib import Path
-
     from sono import closures, formats, library
     from sono.cli import options
     from sono.scramble import scramble
@@ -58,7 +57,7 @@ def command(
     if word is not None and variant < 0:
         raise click.UsageError(f"--variant {variant}: a braid word has no planar diagram; give 0 or more")
     options.check_suffix(output)
-    if output != "-" and Path(output).exists() and not force:
+    if output != "-" and os.path.exists(output) and not force:
         raise click.UsageError(f"{output} exists; --force overwrites it")
     try:
         if word is not None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import text, vect
-from sono.formats.files import atomic_text, is_stream, load, save
+from sono.formats.files import atomic_text, is_stream, load, part_of, save
 from sono.formats.vertices import FormatError, VertexFile
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "is_stream",
     "load",
     "parse",
+    "part_of",
     "read",
     "save",
     "write",

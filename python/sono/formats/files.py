@@ -52,6 +52,12 @@ def save(target: str, content: str) -> None:
         raise FormatError(f"{target}: cannot be written: {error.strerror or error}") from error
 
 
+def part_of(path: str | os.PathLike[str]) -> Path:
+    """Return a new name for what is to replace a file, in the folder where the file itself is."""
+    # Anywhere else, on another file system say, a rename would not be atomic.
+    return Path(os.path.realpath(path)).with_name(f".sono-{secrets.token_hex(8)}.part")
+
+
 @contextmanager
 def atomic_text(path: str | os.PathLike[str]) -> Iterator[TextIO]:
     """Open a text file for writing that replaces `path` only once it is complete and on the disk.
@@ -64,8 +70,7 @@ def atomic_text(path: str | os.PathLike[str]) -> Iterator[TextIO]:
         with target.open("w", encoding="utf-8", newline="\n") as stream:
             yield stream
         return
-    # In the same folder, since a rename across file systems would not be atomic.
-    part = target.with_name(f".sono-{secrets.token_hex(8)}.part")
+    part = part_of(target)
     try:
         with part.open("x", encoding="utf-8", newline="\n") as stream:
             yield stream
