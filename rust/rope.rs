@@ -305,3 +305,92 @@ impl Rope {
         self.gap = Gap::of(&self.curve, &self.dl, &self.pairs);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-1f64..1.).prop_map(DVec3::from)
+    }
+
+    /// Two edges, their ends in a row, as far apart as they are.
+    fn gap([a, b, c, d]: [DVec3; 4]) -> Gap {
+        let beads = [(a, c), (a, d), (b, c), (b, d)].map(|(p, q)| p.distance(q));
+        let beads = beads.into_iter().fold(2., f64::min);
+        Gap { beads, edge: a.distance(b).max(c.distance(d)), bend: 0. }
+    }
+
+    #[test]
+    fn the_closest_pass_that_there_can_be_is_not_safe() {
+        // Two edges at right angles, one above the other, pass through each other in their middles.
+        for s in [1e-3, 0.01, 0.1, 0.5, 1., 1.2] {
+            for way in [1e-6, 1e-3, 0.1, 0.25] {
+                let at = |z: f64| {
+                    gap([[-s, 0., z], [s, 0., z], [0., -s, -z], [0., s, -z]]
+                        .map(|v| 0.5 * DVec3::from(v)))
+                };
+                assert!(!at(way).safe(at(-way), way), "{s} {way}");
+                // But they may come near.
+                assert!(at(way).safe(at(way), 0.));
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn edges_that_pass_are_never_safe(
+            directions in prop::array::uniform2(vector()),
+            ways in prop::array::uniform4(vector()),
+            (along, across) in (0f64..1., 0f64..1.),
+            when in 0f64..1.,
+            speed in 0f64..1.,
+        ) {
+            // They meet in the origin.
+            let [x, y] = directions;
+            let meeting = [-along * x, (1. - along) * x, -across * y, (1. - across) * y];
+            let at = |t: f64| std::array::from_fn(|k| meeting[k] + speed * (t - when) * ways[k]);
+            let way = ways.map(|way| speed * way.length()).into_iter().fold(0., f64::max);
+            prop_assert!(!gap(at(0.)).safe(gap(at(1.)), way));
+        }
+    }
+
+    #[test]
+    fn a_rope_bent_to_half_its_radius_is_not_safe() {
+        let gap = |bend| Gap { beads: 2., edge: 0.5, bend };
+        assert!(gap(1.9).safe(gap(1.9), 0.1));
+        assert!(!gap(1.9).safe(gap(2.), 0.1) && !gap(2.).safe(gap(1.9), 0.1));
+    }
+
+    #[test]
+    fn beads_that_are_not_listed_do_not_overlap() {
+        let vertex = |i: usize| {
+            let t = std::f64::consts::TAU * i as f64 / 90.;
+            let r = 2. + 0.8 * (3. * t).cos();
+            DVec3::new(r * (2. * t).cos(), r * (2. * t).sin(), 0.8 * (3. * t).sin())
+        };
+        let mut rope = Rope::new(Curve::new(vec![(0..90).map(vertex).collect()]).unwrap());
+        let mut lists = 0;
+        for _ in 0..3000 {
+            let (reference, skin) = (rope.reference.clone(), rope.skin);
+            rope.stretch(0.999);
+            if rope.sweep(0.5, 0.25, 0.05).is_none() {
+                continue;
+            }
+            lists += usize::from(rope.age == 0);
+            let v = rope.curve.vertices();
+            for (i, (now, then)) in v.iter().zip(reference).enumerate() {
+                assert!(now.distance(then) <= 0.5 * skin + 1e-12);
+                for (j, other) in v[..i].iter().enumerate() {
+                    let listed = || rope.pairs.binary_search(&(j as u32, i as u32)).is_ok();
+                    // Required edges get shorter, and beads that are near along the rope count from then on.
+                    let near = rope.curve.index_distance(i, j).unwrap() < 20;
+                    assert!(near || now.distance(*other) >= 2. - 1e-12 || listed(), "{i} {j}");
+                }
+            }
+        }
+        assert!(lists > 5, "{lists}");
+    }
+}

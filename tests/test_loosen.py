@@ -1,6 +1,7 @@
 """Any embedded polygon collapses to a rope of its own type, however thin, slack or entangled it is."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TypeAlias
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from polygons import entangled, equilateral, gaussian, knotted_arc, lattice, meander
 
 from sono import _core, library, tighten
-from sono._core import Collapse
+from sono._core import Collapse, CurveError
 from sono.invariants import (
     ORDERS,
     Curve,
@@ -71,6 +72,30 @@ def test_sticks_of_a_knot_with_hundreds_of_crossings() -> None:
     collapse = collapsed(polygon)
     assert collapse.loosened()
     assert fingerprint(collapse.best()) == fingerprint([polygon])
+
+
+@pytest.mark.parametrize("draw", [gaussian, equilateral, entangled])
+def test_the_first_rope_on_a_polygon_has_its_type(draw: Draw) -> None:
+    """Before any sweep, and without any loosening: corners are rounded and small knots not stepped over."""
+    made = 0
+    for n in range(5, 25):
+        polygon = [draw(n, n)]
+        with suppress(CurveError):  # too thin for it
+            rope = Collapse(polygon, True, "{}").best()
+            assert fingerprint(rope) == fingerprint(polygon)
+            made += 1
+    assert made >= 10
+
+
+@pytest.mark.parametrize("size", [0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("name", ["3_1", "m4_1", "8_19"])
+def test_the_first_rope_on_a_loop_has_its_small_knot(name: str, size: float) -> None:
+    loop = [knotted_arc(name, size, 1)]
+    if size >= 0.01:
+        assert fingerprint(Collapse(loop, True, "{}").best()) == fingerprint(library.start(name))
+    else:
+        with pytest.raises(CurveError, match="comes so close to itself"):
+            Collapse(loop, True, "{}")
 
 
 def test_a_thick_curve_is_collapsed_as_it_is() -> None:

@@ -18,6 +18,9 @@ from sono.pipeline import Stopped
 from sono.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine, reseat
 from sono.workers import Threads
 
+SHARE = search.GENTLE
+"""The share of gentle anneals, as it is outside of these tests."""
+
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -268,6 +271,25 @@ def test_a_hot_anneal(monkeypatch: pytest.MonkeyPatch) -> None:
     assert minimum
     assert minimum.tight
     assert 42 < minimum.length < 42.2
+
+
+def test_a_search_anneals_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "GENTLE", SHARE)
+    anneals: list[dict[str, float]] = []
+
+    def spy(*arguments: Any) -> _core.Tightener:
+        settings = json.loads(arguments[3])
+        del settings["seed"]
+        anneals.append(settings)
+        return _core.Tightener(*arguments)
+
+    monkeypatch.setattr(search, "Tightener", spy)
+    found = run("3_1", 12)
+    assert len(anneals) == 12
+    assert {anneals.count(search.HOT_ANNEAL), anneals.count(search.GENTLE_ANNEAL)} == {4, 8}
+    assert (found.trials, found.failed, found.changed) == (12, 0, 0)
+    assert found.minima[0].tight
+    assert found.minima[0].length == pytest.approx(32.743, abs=5e-3)
 
 
 @pytest.mark.parametrize("wrong", [0.7, 0.94, 1.05, 1.4])

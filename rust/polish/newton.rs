@@ -237,3 +237,153 @@ impl Matrix {
 fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    use super::super::problem::chain_terms;
+    use super::*;
+
+    const MU: f64 = 0.1;
+    const HAT: f64 = 4.;
+
+    /// Small tangles in a row, two radii apart, the least of so few beads that neighbours of neighbours
+    /// are neighbours.
+    fn tangles(random: &mut Pcg64Mcg) -> Curve {
+        let component = |(c, n): (usize, usize)| {
+            let mut vertex = |_| {
+                let v: [f64; 3] = std::array::from_fn(|_| random.random_range(0.0..0.4));
+                2.5 * c as f64 * DVec3::X + DVec3::from(v)
+            };
+            (0..n).map(&mut vertex).collect()
+        };
+        Curve::new([3, 4, 5, 12].into_iter().enumerate().map(component).collect()).unwrap()
+    }
+
+    /// The shortest required edges that let a component turn as it does.
+    fn shortest(v: &[DVec3]) -> f64 {
+        let n = v.len();
+        let at = |i: usize| v[i % n];
+        let edge = |i: usize| at(i).distance(at(i + 1));
+        let bend = |i: usize| (at(i) - 2. * at(i + 1) + at(i + 2)).length().sqrt();
+        (0..n).map(|i| edge(i).max(bend(i))).fold(0., f64::max)
+    }
+
+    /// The whole matrix, its terms' gradients and second derivatives one by one, and the right-hand side.
+    fn dense(
+        curve: &Curve,
+        terms: &[Term],
+        z: &[f64],
+        [shift, corner_shift]: [f64; 2],
+    ) -> (Mat<f64>, Vec<f64>) {
+        let n = 3 * curve.n();
+        let size = n + curve.components();
+        let mut matrix = Mat::from_fn(size, size, |i, j| match i == j {
+            true if i < n => shift,
+            true => corner_shift,
+            false => 0.,
+        });
+        let mut rhs = vec![0.; size];
+        for (c, range) in curve.ranges().enumerate() {
+            rhs[n + c] = -(range.len() as f64);
+        }
+        for (t, z) in terms.iter().zip(z) {
+            let (w, dw) = t.weight(HAT);
+            let stiffness = (z - MU * dw) / t.g;
+            let mut gradient = vec![0.; size];
+            for (i, part) in t.gradient() {
+                (0..3).for_each(|axis| gradient[3 * i + axis] += part[axis]);
+            }
+            gradient[n + t.component] += t.h[0];
+            for i in 0..size {
+                rhs[i] += MU * w / t.g * gradient[i];
+                (0..size).for_each(|j| matrix[(i, j)] += stiffness * gradient[i] * gradient[j]);
+            }
+            for (a, ca) in t.beads.into_iter().zip(t.coefficients) {
+                for (b, cb) in t.beads.into_iter().zip(t.coefficients) {
+                    (0..3)
+                        .for_each(|x| matrix[(3 * a + x, 3 * b + x)] -= 2. * z * t.sign * ca * cb);
+                }
+            }
+            matrix[(n + t.component, n + t.component)] -= 2. * z * t.h[1];
+        }
+        (matrix, rhs)
+    }
+
+    fn is_definite(matrix: &Mat<f64>) -> bool {
+        matrix.llt(Side::Lower).is_ok()
+    }
+
+    #[test]
+    fn a_step_solves_the_dense_system() {
+        let mut random = Pcg64Mcg::seed_from_u64(2);
+        let mut newton = Newton::default();
+        let (mut at_once, mut by_blocks, mut by_lengths) = (0, 0, 0);
+        for round in 0..60 {
+            let curve = tangles(&mut random);
+            let n = curve.n() as u32;
+            let pairs: Vec<_> = (0..n)
+                .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
+                .filter(|&(i, j)| {
+                    let [c, d] = [i, j].map(|i| curve.component_of(i as usize));
+                    d == c + 1 && Term::contact(curve.vertices(), i, j).g < HAT
+                })
+                .collect();
+            // Some come and some go, so that the pattern has idle pairs, or is too small.
+            let (near, far): (Vec<_>, Vec<_>) =
+                pairs.iter().copied().partition(|_| random.random_bool(0.7));
+            // Bends near their limit make the edge lengths' part indefinite, contacts that press hard
+            // the vertices'.
+            let slack = [3., 1.02][round % 2];
+            let hard = [1e-6, 0.1, 30.][round % 3];
+            let l: Vec<_> =
+                curve.ranges().map(|range| slack * shortest(&curve.vertices()[range])).collect();
+            let contacts = near.iter().map(|&(i, j)| Term::contact(curve.vertices(), i, j));
+            let terms: Vec<_> = chain_terms(&curve, &l).chain(contacts).collect();
+            assert!(terms.len() > 2 * curve.n() + 20 && terms.iter().all(|t| t.g > 0.));
+            let draw = |t: &Term| {
+                10f64.powf(random.random_range(-1.0..1.)) * if t.sign > 0. { hard } else { 1. }
+            };
+            let z: Vec<_> = terms.iter().map(draw).collect();
+
+            newton.shift = 0.;
+            let before = newton.factorisations();
+            let step = newton.step(&curve, &l, &terms, &z, (MU, HAT), &far).unwrap();
+            let shifts = |shift: f64| [(shift + LEAST_SHIFT) / l[0], shift / l[0]];
+            let (matrix, rhs) = dense(&curve, &terms, &z, shifts(newton.shift));
+            let x: Vec<_> = step
+                .d
+                .iter()
+                .flat_map(|d| d.to_array())
+                .chain(step.delta.iter().copied())
+                .collect();
+            let norm = rhs.iter().fold(0f64, |most, b| most.max(b.abs()));
+            for (i, b) in rhs.iter().enumerate() {
+                let row: f64 = x.iter().enumerate().map(|(j, x)| matrix[(i, j)] * x).sum();
+                assert!((row - b).abs() < 1e-8 * norm, "{round}: row {i} gives {row}, not {b}");
+            }
+            let slope = -rhs.iter().zip(&x).map(|(b, x)| b * x).sum::<f64>();
+            assert!(slope < 0. && (slope - step.slope).abs() < 1e-9 * slope.abs());
+
+            // The shift is 0 if that will do, else the first of its row that does.
+            assert!(is_definite(&matrix));
+            if newton.factorisations() == before + 1 {
+                at_once += 1;
+            } else {
+                let less = if newton.shift > FIRST_SHIFT { 0.25 * newton.shift } else { 0. };
+                let (matrix, _) = dense(&curve, &terms, &z, shifts(less));
+                assert!(!is_definite(&matrix));
+                let blocks = Mat::from_fn(3 * curve.n(), 3 * curve.n(), |i, j| matrix[(i, j)]);
+                if is_definite(&blocks) {
+                    by_lengths += 1;
+                } else {
+                    by_blocks += 1;
+                }
+            }
+        }
+        let times = [at_once, by_blocks, by_lengths];
+        assert!(times.iter().all(|&times| times >= 5), "{times:?}");
+    }
+}

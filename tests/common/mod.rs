@@ -79,6 +79,24 @@ fn arclength_between(curve: &Curve, j: usize, i: usize) -> Option<f64> {
     })
 }
 
+/// The linking number of the first two components: the solid angles of all pairs of edges.
+pub fn linking(curve: &Curve) -> f64 {
+    let edges = |c: usize| {
+        let v = curve.component(c);
+        (0..v.len()).map(|i| [v[i], v[(i + 1) % v.len()]]).collect::<Vec<_>>()
+    };
+    let angle = |[a, b]: [DVec3; 2], [c, d]: [DVec3; 2]| {
+        let sides = [c - a, d - a, d - b, c - b];
+        let n: [_; 4] =
+            std::array::from_fn(|k| sides[k].cross(sides[(k + 1) % 4]).normalize_or_zero());
+        let open = |k: usize| n[k].dot(n[(k + 1) % 4]).clamp(-1., 1.).asin();
+        (0..4).map(open).sum::<f64>() * (d - c).cross(b - a).dot(c - a).signum()
+    };
+    let others = edges(1);
+    edges(0).iter().flat_map(|&e| others.iter().map(move |&f| angle(e, f))).sum::<f64>()
+        / (2. * TAU)
+}
+
 /// Runs a tightener to its end.
 pub fn finish(mut tightener: Tightener) -> Tightener {
     while tightener.step() == Outcome::Running {}

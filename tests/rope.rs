@@ -1,0 +1,58 @@
+//! The bead rope: no strand passes another, whatever is asked of it.
+
+mod common;
+
+use common::{hopf, linking};
+use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use sono::rope::Rope;
+
+#[test]
+fn a_sweep_that_would_pass_a_strand_is_undone() {
+    // Two linked rings that shrink without end; overlaps are not removed at all, or too slowly.
+    for (c_1, c_2, shrink) in
+        [(0.5, 0., 0.99), (0.1, 0., 0.999), (0.5, 0.01, 0.95), (0.5, 0.5, 0.5)]
+    {
+        let mut rope = Rope::new(hopf(30));
+        let linked = linking(rope.curve()).round();
+        let mut states = vec![rope.curve().clone()];
+        let mut undone = 0;
+        for _ in 0..1000 {
+            rope.stretch(shrink);
+            let length = rope.length();
+            let met = rope.sweep(c_1, c_2, 0.);
+            if met.is_none() {
+                undone += 1;
+                assert!(states.contains(rope.curve()), "undone to what it never was");
+                assert!((rope.length() - 1.001 * length).abs() < 1e-12 * length);
+            } else {
+                states.push(rope.curve().clone());
+            }
+            assert!((linking(rope.curve()) - linked).abs() < 1e-6, "{c_1} {c_2} {shrink}");
+        }
+        assert!(undone > 10, "{c_1} {c_2} {shrink}: {undone} undone");
+    }
+}
+
+#[test]
+fn a_displacement_that_might_pass_a_strand_is_undone() {
+    let mut rope = Rope::new(hopf(14));
+    let linked = linking(rope.curve()).round();
+    let mut random = Pcg64Mcg::seed_from_u64(1);
+    let (mut moved, mut refused) = (0, 0);
+    for _ in 0..1000 {
+        let before = rope.curve().clone();
+        rope.displace(|| {
+            let step = DVec3::from_array(std::array::from_fn(|_| random.random_range(-1.0..1.)));
+            0.1 * step.clamp_length_max(1.)
+        });
+        if *rope.curve() == before {
+            refused += 1;
+        } else {
+            moved += 1;
+        }
+        assert!((linking(rope.curve()) - linked).abs() < 1e-6);
+    }
+    assert!(moved > 3 && refused > 3, "{moved} moved, {refused} refused");
+}
