@@ -355,6 +355,25 @@ def test_a_long_search_stays_small(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.minima[0].hits > 10
 
 
+def test_every_trial_counts_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shapes of one minimum scatter, and the shortest so far is ever another of them."""
+    made = Made(monkeypatch)
+
+    def attempt(source: Source, variant: int, watch: search.Watch = search.unwatched) -> Shape:
+        draw = np.random.default_rng(abs(variant) + (variant < 0) * 10**7)
+        radii = np.array([1, 2, 3]) * draw.uniform(1, 1 + 2 * search.SAME_RADII)
+        return Shape(variant, 30 * draw.uniform(1, 1.003), radii, made.curve)
+
+    def refine(shape: Shape, watch: search.Watch = search.unwatched) -> search.Minimum:
+        return search.Minimum(shape.variant, 30, True, 0, made.curve, [shape.radii])
+
+    monkeypatch.setattr(search, "attempt", attempt)
+    monkeypatch.setattr(search, "refine", refine)
+    for seed in range(20):
+        found = run("3_1", 64, Search(seed=seed))
+        assert [minimum.hits for minimum in found.minima] == [64 - sum(s.hits for s in found.shapes)]
+
+
 def test_64_workers_are_busy_and_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     made = Made(monkeypatch, seconds=0.01)
     one, other = Search(), Search()
