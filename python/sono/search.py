@@ -396,7 +396,7 @@ class Search:
         for i, other in enumerate(self.shapes):
             if _alike(shape.radii, other.radii):
                 shorter = min(shape, other, key=lambda shape: shape.length)
-                # It is known by the first one's radii while it is refined; those of others may be further off.
+                # It goes by the first one's radii while it is refined; those of others may be further off.
                 self.shapes[i] = replace(shorter, radii=other.radii, hits=other.hits + 1)
                 break
         else:
