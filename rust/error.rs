@@ -77,18 +77,30 @@ pub enum Error {
         /// The smallest number that will do.
         needed: usize,
     },
-    /// Edges so long that even neighbouring beads would have to be 2 R apart: see
-    /// [`crate::procedures::least_index_distance`].
+    /// Edges so long that strands would fit between beads.
     #[error(
         "{n} vertices are too few: the edges of this knot would be {dl:.2} R long and must stay \
-         below 1.2 R; ask for at least {needed}"
+         below {limit} R, or strands would fit between beads; ask for at least {needed}"
     )]
     TooCoarse {
         /// The number of vertices that was asked for.
         n: usize,
         /// The edge length it leads to.
         dl: f64,
+        /// What it must stay below.
+        limit: f64,
         /// The smallest number that will do.
+        needed: usize,
+    },
+    /// So few vertices that the straight edges between them would have to pass a strand.
+    #[error(
+        "{n} vertices are too few: a strand is in the way of the straight edges between them; ask for \
+         at least {needed}"
+    )]
+    Pierced {
+        /// The number of vertices that was asked for.
+        n: usize,
+        /// One that will do.
         needed: usize,
     },
     /// A setting lies outside its range.

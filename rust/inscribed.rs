@@ -126,6 +126,38 @@ pub fn refine(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
     Ok(inscribed.sample(&shares, shift).0)
 }
 
+/// A tight rope's K_P sampled with `n` vertices in all, so few that the chords might cut through a
+/// strand: vertices between are removed one by one, where that is an isotopy.
+///
+/// # Errors
+/// [`Error::TooFew`]; [`Error::Pierced`] where a strand is in the way.
+pub fn coarsen(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
+    let needed = 3 * curve.components();
+    if n < needed {
+        return Err(Error::TooFew { n, needed });
+    }
+    let inscribed = Inscribed::new(curve);
+    let lengths: Vec<_> = inscribed.lengths().collect();
+    let shares = share_out(n, &lengths);
+    let times = (lengths.iter().sum::<f64>() / measure(curve).r_s / (LOOSE_EDGE * n as f64)).ceil();
+    let times = times as usize;
+    let finer: Vec<_> = shares.iter().map(|share| times * share).collect();
+    let mut sticks = Sticks::new(&inscribed.sample(&finer, shift).0);
+    let mut left = 0;
+    while left != sticks.n() && sticks.n() > n {
+        left = sticks.n();
+        for i in 0..times * n {
+            if i % times != 0 && sticks.is_there(i) {
+                sticks.remove(i);
+            }
+        }
+    }
+    if sticks.n() > n {
+        return Err(Error::Pierced { n, needed: sticks.n() });
+    }
+    Ok(sticks.curve())
+}
+
 /// Edge length of a loose rope, as a multiple of its radius.
 const LOOSE_EDGE: f64 = 0.5;
 /// Largest angle by which K_P may turn in all above a chord: it then stays within a fifth of the

@@ -2,8 +2,8 @@
 //!
 //! **Curve -> measures** is one road, **curve -> loose curve -> rope -> sweeps of SONO -> Newton steps of
 //! the polish -> tight curve** the other. Dependencies point one way only:
-//! `error, segments, curve <- neighbours, sticks <- measures, projection <- inscribed, embedded, procedures
-//! <- rope, loosen <- tighten <- collapse, polish <- python`; `modular` stands alone.
+//! `error, segments, curve <- neighbours, sticks <- measures, projection <- inscribed, embedded, procedures,
+//! passage <- rope, loosen <- tighten <- collapse, polish <- python`; `modular` stands alone.
 
 pub mod collapse;
 pub mod curve;
@@ -14,6 +14,7 @@ pub mod loosen;
 pub mod measures;
 pub mod modular;
 pub mod neighbours;
+pub mod passage;
 pub mod polish;
 pub mod procedures;
 pub mod projection;

@@ -14,25 +14,37 @@ use glam::DVec3;
 /// The definition of SR has MinRad in place of R_c. ControlCurvature keeps MinRad >= R_c, so this
 /// is the stricter side: a rope that obeys it measures R_s = 1. (The paper's text on the simulation
 /// lets index distances up to ceil(pi MinRad/dl) overlap, two more than its definition of SR.)
+///
+/// Edges of [`COARSE`] or more would have neighbours 2 R apart. There CC keeps MinRad > 2 dl/pi, so
+/// that the rule, with MinRad, goes on to exempt them.
 pub fn least_index_distance(dl: f64) -> usize {
-    (PI * (1. - 0.25 * dl * dl).max(0.).sqrt() / dl - 1.).ceil().max(1.) as usize
+    (PI * (1. - 0.25 * dl * dl).max(0.).sqrt() / dl - 1.).ceil().max(2.) as usize
+}
+
+/// From this edge length on the index rule, not the thickness of the rope, limits how sharp it turns.
+pub const COARSE: f64 = 1.235;
+
+/// Largest length of a second difference of the vertices, v_(i-1) - 2 v_i + v_(i+1), for edges `dl`.
+///
+/// It is 2 dl sin(theta_i/2). The paper's R_i = dl/(2 sin(theta_i/2)), the radius at which the disks on
+/// both sides of a bead become tangent, is at least 1 where it is at most dl^2. On coarse ropes
+/// theta_i must stay below 2 arctan(pi/4), hence it below 1.2353 dl, for MinRad > 2 dl/pi.
+pub fn most_bend(dl: f64) -> f64 {
+    dl * dl.min(COARSE)
 }
 
 /// EE: brings each edge of one component closer to `dl`, by the share `c_1` at either end.
-/// Returns the largest |dl/s_i - 1| and the largest s_i met.
+/// Returns the largest |dl/s_i - 1| met.
 ///
 /// Every other edge first, then the ones between: these do not wait for each other, which is
 /// three times as fast as walking along the chain and converges alike.
-pub fn equalize_edges(v: &mut [DVec3], dl: f64, c_1: f64, odd_first: bool) -> (f64, f64) {
+pub fn equalize_edges(v: &mut [DVec3], dl: f64, c_1: f64, odd_first: bool) -> f64 {
     let per_square = 1. / (dl * dl);
-    let (mut worst, mut longest) = (0f64, 0f64);
+    let mut worst = 0f64;
     let mut equalize = |from: &mut DVec3, to: &mut DVec3| {
         let edge = *to - *from;
         // Two beads in one place stay there: there is no direction to move them in.
         let squared = edge.length_squared().max(f64::MIN_POSITIVE);
-        if squared > longest {
-            longest = squared;
-        }
         let lack = inverse_root(squared * per_square - 1.);
         let shift = (c_1 * lack) * edge;
         *from -= shift;
@@ -51,7 +63,7 @@ pub fn equalize_edges(v: &mut [DVec3], dl: f64, c_1: f64, odd_first: bool) -> (f
     if let [first, .., last] = v {
         equalize(last, first);
     }
-    (worst, longest.sqrt())
+    worst
 }
 
 /// 1/sqrt(1 + x) - 1; near 0, where nearly all calls are, by its series, at a third of the cost.
@@ -84,16 +96,13 @@ pub fn remove_overlaps(v: &mut [DVec3], pairs: &[(u32, u32)], c_2: f64, epsilon:
     2. - closest.sqrt()
 }
 
-/// CC: opens each corner of one component that turns by more than 2 arcsin(dl/2), moving its vertex
-/// inwards and the two beside it outwards, across the edges, so that these keep their lengths.
-/// Returns the largest 1 - R_i met, R_i = dl/(2 sin(theta_i/2)) being the paper's radius at which
-/// the disks on both sides of a bead become tangent.
-///
-/// With edges dl the second difference of the vertices is 2 dl sin(theta_i/2) long, so R_i >= 1
-/// where it is at most dl^2; a difference of the two edges enters it only squared.
+/// CC: opens each corner of one component whose second difference is longer than [`most_bend`],
+/// moving its vertex inwards and the two beside it outwards, across the edges, so that these keep
+/// their lengths; a difference of the two edges enters it only squared. Returns the largest excess
+/// met, 1 - R_i where edges are not coarse.
 pub fn control_curvature(v: &mut [DVec3], dl: f64) -> f64 {
     let n = v.len();
-    let most = dl * dl;
+    let most = most_bend(dl);
     let mut worst = 0f64;
     let mut open = |i: usize, j: usize, k: usize| {
         let bend = (v[i] - v[j]) + (v[k] - v[j]);

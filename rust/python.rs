@@ -41,7 +41,9 @@ fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
 
 fn to_python(error: Error) -> PyErr {
     let needed = match error {
-        Error::TooFew { needed, .. } | Error::TooCoarse { needed, .. } => Some(needed),
+        Error::TooFew { needed, .. }
+        | Error::TooCoarse { needed, .. }
+        | Error::Pierced { needed, .. } => Some(needed),
         _ => None,
     };
     let places = match error {
@@ -58,7 +60,8 @@ fn to_python(error: Error) -> PyErr {
         | Error::TooThin { .. }
         | Error::TooEntangled { .. }
         | Error::TooFew { .. }
-        | Error::TooCoarse { .. } => vec![],
+        | Error::TooCoarse { .. }
+        | Error::Pierced { .. } => vec![],
     };
     let raised = CurveError::new_err(error.to_string());
     let explained = |py: Python<'_>| {

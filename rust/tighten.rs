@@ -110,7 +110,7 @@ pub struct Status {
     pub progress: f64,
     /// Sweeps done.
     pub sweeps: u64,
-    /// Sweeps undone because a strand might have passed another.
+    /// How often sweeps were undone because a strand might have passed another.
     pub undone: u64,
     /// The overshoot of RO at this moment.
     pub epsilon: f64,
@@ -138,7 +138,6 @@ pub struct Tightener {
     planned: u64,
     first_tolerance: f64,
     undone: u64,
-    undone_in_a_row: u64,
     met: Violation,
     outcome: Outcome,
     best: Best,
@@ -207,7 +206,6 @@ impl Tightener {
             planned,
             first_tolerance: tolerance,
             undone: 0,
-            undone_in_a_row: 0,
             met: Violation::default(),
             outcome: Outcome::Running,
             best,
@@ -248,13 +246,9 @@ impl Tightener {
         match self.rope.sweep(c_1, c_2, 0.5 * tolerance) {
             Some(met) => {
                 self.met = met;
-                self.undone_in_a_row = 0;
                 self.shrink_on_no_overlaps(tolerance);
             }
-            None => {
-                self.undone += 1;
-                self.undone_in_a_row += 1;
-            }
+            None => self.undone += 1,
         }
         self.sweeps += 1;
         if self.sweeps.is_multiple_of(10) && self.rope.curve().components() > 1 {
@@ -264,6 +258,7 @@ impl Tightener {
             self.take_in_slack();
         }
         if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
+            self.undone += u64::from(!self.rope.confirm());
             let valid = self.keep_best();
             self.outcome = self.judge(valid);
             if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
@@ -313,11 +308,12 @@ impl Tightener {
     /// Scales a collapsing rope down as far as its beads allow, and takes out beads that have come
     /// close: EE alone would shorten long slack only as fast as tension diffuses along the chain.
     fn take_in_slack(&mut self) {
+        self.undone += u64::from(!self.rope.confirm());
         let curve = self.rope.curve();
         let slack = measure(curve).r_s > 1. + SLACK;
         if self.rope.dl() < TOO_FINE {
-            let n = (self.rope.length() / LOOSE) as usize;
-            // At least 12 for each component, which is no shorter than 2 pi.
+            // A component is no shorter than 2 pi.
+            let n = ((self.rope.length() / LOOSE) as usize).max(12 * curve.components());
             self.rope = Rope::new(refine(curve, n, 0.25).expect("enough beads"));
         } else if slack {
             self.rope = Rope::new(curve.clone());
@@ -328,7 +324,7 @@ impl Tightener {
 
     fn judge(&mut self, valid: bool) -> Outcome {
         match self.stage {
-            _ if self.undone_in_a_row >= BURST => Outcome::Stuck,
+            _ if self.rope.undone() >= BURST => Outcome::Stuck,
             Stage::Collapse if self.sweeps >= self.planned => Outcome::Tight,
             Stage::Collapse if self.sweeps.is_multiple_of(JAM_SWEEPS) => {
                 let before = std::mem::replace(&mut self.length, self.rope.curve().length());

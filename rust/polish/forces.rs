@@ -7,7 +7,7 @@ use super::problem::{Term, chain_terms};
 use crate::curve::Curve;
 use crate::measures::measure;
 use crate::neighbours::{Separation, for_each_close_pair};
-use crate::procedures::least_index_distance;
+use crate::procedures::{least_index_distance, most_bend};
 
 /// The forces in a rope of radius 1, in units of its mean tension.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,7 +83,7 @@ pub fn balance(curve: &Curve) -> Forces {
     let n = curve.n();
     for (k, t) in terms[..2 * n].iter_mut().enumerate() {
         let l = l[t.component];
-        let least = if k < n { (1. - SLACK) * l } else { (1. - BENT) * l * l };
+        let least = if k < n { (1. - SLACK) * l } else { (1. - BENT) * most_bend(l) };
         if t.y.length() < least {
             // No force: without a gradient its multiplier has no effect.
             (t.y, t.h) = (DVec3::ZERO, [0.; 2]);

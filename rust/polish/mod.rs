@@ -29,8 +29,8 @@ use crate::error::Result;
 use crate::inscribed::{refine, rope_curve};
 use crate::measures::{Measures, measure};
 use crate::neighbours::{Separation, for_each_close_pair};
-use crate::procedures::least_index_distance;
-use crate::rope::Rope;
+use crate::procedures::{least_index_distance, most_bend};
+use crate::rope::{LONGEST_EDGE, Rope};
 use crate::tighten::{Outcome, scaled};
 pub use forces::{Forces, balance};
 use newton::{Newton, Step};
@@ -60,8 +60,10 @@ const TO_THE_BOUNDARY: f64 = 0.99;
 const KEEP: f64 = 100.;
 /// Longest way of a bead in one step, in radii.
 const LONGEST_WAY: f64 = 0.1;
+/// Shortest edge, as a share of the longest that there may be: see [`crate::passage`] for why.
+pub(crate) const SHORTEST_EDGE: f64 = 0.9;
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
-const UNEQUAL: f64 = 0.1;
+const UNEQUAL: f64 = 0.04;
 /// Beads of a rope that is made of a curve which is none.
 const MOST_BEADS: usize = 20_000;
 /// Iterations in which a rope gets tight or never does.
@@ -136,10 +138,14 @@ impl Polish {
     /// [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], [`crate::Error::TooCoarse`].
     pub fn new(curve: &Curve, n: usize, passing: bool, seed: u64) -> Result<Self> {
         let given = measure(curve);
-        let is_rope = given.r_c.is_some() && given.dispersion < UNEQUAL;
+        let coarse = curve.n() == n && given.l_p < LONGEST_EDGE * n as f64;
+        let is_rope = (given.r_c.is_some() || coarse) && given.dispersion < UNEQUAL;
         let made = if is_rope { None } else { Some(rope_curve(curve, MOST_BEADS)?) };
         let mut curve = Rope::resampled(made.as_ref().unwrap_or(curve), n, seed)?.curve().clone();
-        let bound = |t: &Term, l: &[f64]| 1e-3 * l[t.component].powi(6);
+        let bound = |t: &Term, l: &[f64]| {
+            let l = l[t.component];
+            1e-3 * (l * most_bend(l)).powi(2)
+        };
         let l = longest(&curve);
         if chain_terms(&curve, &l).any(|t| t.g < -bound(&t, &l)) {
             // Edges too unequal for its own bends; equal ones lie on K_P.
@@ -322,9 +328,10 @@ impl Polish {
         };
         let merit = |curve: &Curve, l: &[f64]| {
             let v = curve.vertices();
-            // Edges below half their length, too, are out of bounds: a strand would fit between.
-            let least_edge =
-                |k: usize, t: &Term| k >= v.len() || t.g < 0.75 * l[t.component].powi(2);
+            // Edges too short, too, are out of bounds: the rope might turn back between them.
+            let least_edge = |k: usize, t: &Term| {
+                k >= v.len() || t.g < (1. - SHORTEST_EDGE * SHORTEST_EDGE) * l[t.component].powi(2)
+            };
             let chain = chain_terms(curve, l)
                 .enumerate()
                 .map(|(k, t)| if t.g > 0. && least_edge(k, &t) { t.g.ln() } else { f64::NAN });

@@ -5,7 +5,8 @@
 //!
 //! - edges `l^2 - |v_(i+1) - v_i|^2 >= 0`: the rope's tension pulls them all to length l;
 //! - bends `l^4 - |v_(i-1) - 2 v_i + v_(i+1)|^2 >= 0`: with edges l the second difference is
-//!   2 l sin(theta/2) long, so this is ControlCurvature's theta <= 2 arcsin(l/2);
+//!   2 l sin(theta/2) long, so this is ControlCurvature's theta <= 2 arcsin(l/2); on coarse ropes
+//!   1.235^2 l^2 takes the place of l^4 ([`crate::procedures::most_bend`]);
 //! - contacts `|v_i - v_j|^2 - 4 >= 0`, for beads at least K apart along the rope
 //!   ([`crate::procedures::least_index_distance`]).
 //!
@@ -15,6 +16,7 @@
 use glam::DVec3;
 
 use crate::curve::Curve;
+use crate::procedures::{COARSE, most_bend};
 
 /// One constraint, where the rope is.
 #[derive(Debug, Clone, Copy)]
@@ -46,8 +48,10 @@ impl Term {
     fn bend(v: &[DVec3], beads: [usize; 3], component: usize, l: f64) -> Self {
         let [i, j, k] = beads;
         let y = (v[i] - v[j]) + (v[k] - v[j]);
-        let g = l.powi(4) - y.length_squared();
-        let h = [4. * l.powi(3), 6. * l * l];
+        let most = most_bend(l);
+        let g = most * most - y.length_squared();
+        let square = COARSE * COARSE;
+        let h = if l < COARSE { [4. * l.powi(3), 6. * l * l] } else { [2. * square * l, square] };
         Self { beads, coefficients: [1., -2., 1.], component, sign: -1., y, g, h }
     }
 
