@@ -1,6 +1,7 @@
 """`sono measure FILE...`: what curves measure, as they are."""
 
 import sys
+from functools import partial
 
 import click
 
@@ -28,6 +29,7 @@ def command(
     # Imported here, since numpy would make --help wait.
     from sono import batch
     from sono.formats import FormatError
+    from sono.patience import patiently
     from sono.pipeline import forces
 
     if residual and "residual" not in columns:
@@ -46,6 +48,8 @@ def command(
                 doubts.append(f"{curve.name}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
             for doubt in doubts if not quiet else []:
                 options.complain(doubt)
-            more = {"residual": forces(curve.components).residual} if "residual" in columns else {}
+            more = {}
+            if "residual" in columns:
+                more["residual"] = patiently(partial(forces, curve.components)).residual
             table.row(batch.as_row(options.knot_name(source), curve.name, measures, **more))
     sys.exit(1 if failed else 0)
