@@ -67,8 +67,10 @@ const UNEQUAL: f64 = 0.04;
 /// Beads of a rope that is made of a curve which is none.
 const MOST_BEADS: usize = 20_000;
 /// Iterations in which a rope gets tight or never does.
-const MOST_ITERATIONS: u64 = 1000;
-/// A rope that cannot move begins anew with so many times its first mu, so often.
+const MOST_ITERATIONS: u64 = 2000;
+/// A rope that cannot move, or is still gliding at its first mu after so many steps, as one does that
+/// beads' grooves held on a coarser level, begins anew with so many times that mu, so often.
+const PATIENCE: u64 = 200;
 const MORE_ROOM: f64 = 10.;
 const MOST_RESTARTS: u32 = 3;
 
@@ -112,6 +114,8 @@ pub struct Polish {
     way: f64,
     newton: Newton,
     iterations: u64,
+    /// How many of them there were when it began, perhaps anew.
+    begun: u64,
     residual: f64,
     excess: f64,
     restarts: u32,
@@ -167,6 +171,7 @@ impl Polish {
             way: (2. * dl * dl).min(LONGEST_WAY),
             newton: Newton::default(),
             iterations: 0,
+            begun: 0,
             residual: f64::MAX,
             excess: f64::MAX,
             restarts: 0,
@@ -189,6 +194,7 @@ impl Polish {
         self.chain = chain_terms(&curve, &self.l).map(|t| mu / t.g).collect();
         self.contacts.clear();
         (self.curve, self.mu, self.first_mu) = (curve, mu, mu);
+        self.begun = self.iterations;
     }
 
     /// Whether a restored state is one that can go on.
@@ -235,12 +241,13 @@ impl Polish {
         let step = self.newton.step(curve, l, &terms, &z, (self.mu, self.range()), &bystanders);
         let moved = step.is_some_and(|step| self.take(step, &terms, &z, &bystanders));
         self.iterations += 1;
+        let gliding = self.mu == self.first_mu && self.iterations == self.begun + PATIENCE;
         if !moved && self.residual <= TIGHT && self.mu <= self.last_mu {
             // As far as the digits go.
             self.end(Outcome::Tight);
         } else if self.iterations == MOST_ITERATIONS || (!moved && self.restarts == MOST_RESTARTS) {
             self.outcome = Outcome::Stuck;
-        } else if !moved {
+        } else if !moved || (gliding && self.restarts + 1 < MOST_RESTARTS) {
             // With so little room for its rearrangement the rope has run into a corner.
             self.restarts += 1;
             self.begin(MORE_ROOM * self.first_mu);
