@@ -330,3 +330,23 @@ def test_a_thin_curve_is_loosened_once_for_all_trials() -> None:
     assert len(tight.shapes) == 3
     loosening = {trial for trial, status in stages if getattr(status, "stage", None) == "loosen"}
     assert loosening == {1}
+
+
+@pytest.mark.parametrize("method", ["both", "sono"])
+@pytest.mark.parametrize("n", [15, 21])
+def test_a_trefoil_on_as_few_beads_as_in_the_papers_figures(n: int, method: Method) -> None:
+    tight = tighten(library.start("3_1"), n, method=method)
+    assert tight.converged
+    assert invariants.fingerprint(tight.curve) == invariants.fingerprint(library.start("3_1"))
+    # Neighbours touch; edges so long leave no bound.
+    assert tight.measures.l_p < 31
+    assert tight.measures.dl < 2
+    assert tight.measures.l_c is None
+
+
+def test_the_least_n_is_told_and_will_do() -> None:
+    with pytest.raises(sono.CurveError, match="strands would fit between beads; ask for at least") as caught:
+        tighten(library.start("3_1"), 9)
+    needed = caught.value.needed or 0
+    assert 10 < needed < 17
+    assert tighten(library.start("3_1"), needed).converged
