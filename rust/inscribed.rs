@@ -117,13 +117,19 @@ pub fn share_out(n: usize, lengths: &[f64]) -> Vec<usize> {
 /// # Errors
 /// [`Error::TooFew`].
 pub fn refine(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
+    let (inscribed, shares) = shared_out(curve, n)?;
+    Ok(inscribed.sample(&shares, shift).0)
+}
+
+/// K_P of a curve, and what each component gets of `n` vertices.
+fn shared_out(curve: &Curve, n: usize) -> Result<(Inscribed, Vec<usize>)> {
     let needed = 3 * curve.components();
     if n < needed {
         return Err(Error::TooFew { n, needed });
     }
     let inscribed = Inscribed::new(curve);
     let shares = share_out(n, &inscribed.lengths().collect::<Vec<_>>());
-    Ok(inscribed.sample(&shares, shift).0)
+    Ok((inscribed, shares))
 }
 
 /// A tight rope's K_P sampled with `n` vertices in all, so few that the chords might cut through a
@@ -132,15 +138,9 @@ pub fn refine(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
 /// # Errors
 /// [`Error::TooFew`]; [`Error::Pierced`] where a strand is in the way.
 pub fn coarsen(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
-    let needed = 3 * curve.components();
-    if n < needed {
-        return Err(Error::TooFew { n, needed });
-    }
-    let inscribed = Inscribed::new(curve);
-    let lengths: Vec<_> = inscribed.lengths().collect();
-    let shares = share_out(n, &lengths);
-    let times = (lengths.iter().sum::<f64>() / measure(curve).r_s / (LOOSE_EDGE * n as f64)).ceil();
-    let times = times as usize;
+    let (inscribed, shares) = shared_out(curve, n)?;
+    let dl = inscribed.lengths().sum::<f64>() / measure(curve).r_s / n as f64;
+    let times = (dl / LOOSE_EDGE).ceil() as usize;
     let finer: Vec<_> = shares.iter().map(|share| times * share).collect();
     let mut sticks = Sticks::new(&inscribed.sample(&finer, shift).0);
     let mut left = 0;

@@ -36,7 +36,7 @@ const LONG_LIFE: usize = 500;
 /// Edges must be shorter: with edges of sqrt 8 R strands fit between beads.
 pub const LONGEST_EDGE: f64 = 2.3;
 /// From this edge length on, a rope is not resampled by taking chords, but straightened.
-const COARSE: f64 = 1.2;
+const LONGEST_CHORD: f64 = 1.2;
 
 /// What a sweep met before it corrected it, R = 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -112,7 +112,7 @@ impl Rope {
         let on = |n: usize| {
             if curve.n() == n {
                 return Ok(Self::new(curve.clone()));
-            } else if given.l_p / (n as f64) < COARSE {
+            } else if given.l_p / (n as f64) < LONGEST_CHORD {
                 return Ok(Self::new(refine(curve, n, shift)?));
             }
             let mut coarse = coarsen(curve, n, shift)?;
@@ -173,7 +173,7 @@ impl Rope {
 
     /// Scales the rope's shape and length, not its thickness, by a factor near 1.
     pub fn scale(&mut self, factor: f64) {
-        self.confirm();
+        self.undo_unless_apart();
         self.curve.scale(factor);
         self.stretch(factor);
         self.list_neighbours();
@@ -181,7 +181,7 @@ impl Rope {
 
     /// Moves one bead after the other by a `step()`, unless a strand is in the way.
     pub fn displace(&mut self, mut step: impl FnMut() -> DVec3) {
-        self.confirm();
+        self.undo_unless_apart();
         let mut sticks = Sticks::new(&self.curve);
         for i in 0..self.curve.n() {
             sticks.shift(i, sticks.point(i) + step());
@@ -193,11 +193,19 @@ impl Rope {
     /// Undoes all that followed the last list if a strand might have passed another, and makes a new
     /// list; returns whether none might.
     pub fn confirm(&mut self) -> bool {
+        let apart = self.undo_unless_apart();
+        if apart {
+            self.list_neighbours();
+        }
+        apart
+    }
+
+    /// The same without the new list, which the caller makes.
+    fn undo_unless_apart(&mut self) -> bool {
         // Two beads that are not listed were 2 + skin apart and each came skin/2 closer.
         let apart = stay_apart(&self.reference, &self.curve, &self.least, &self.pairs, 2.);
         if apart {
             self.undone = 0;
-            self.list_neighbours();
         } else {
             self.undone += 1;
             self.undo();
@@ -228,7 +236,7 @@ impl Rope {
         }
         if self.pull_back() || self.age == LONG_LIFE {
             let factor = if self.age < SHORT_LIFE { 1.5 } else { 0.8 };
-            if !self.confirm() {
+            if !self.undo_unless_apart() {
                 return None;
             }
             self.skin = (self.skin * factor).min(THICKEST_SKIN);
