@@ -105,7 +105,7 @@ impl Rope {
     /// vertex at random. Where it is `n` already, it is taken as it is.
     ///
     /// # Errors
-    /// [`Error::TooFew`], [`Error::TooCoarse`].
+    /// [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
     pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Self> {
         let shift = Pcg64Mcg::seed_from_u64(seed).random();
         let given = measure(curve);

@@ -161,7 +161,7 @@ impl Tightener {
     /// Anneals a rope on `n` vertices in all; `curve` must be one: see [`Tightener::collapse`].
     ///
     /// # Errors
-    /// [`Error::Setting`], [`Error::TooCoarse`].
+    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
     pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         settings.check()?;
         let mut rope = Rope::resampled(curve, n, settings.seed)?;
@@ -173,7 +173,7 @@ impl Tightener {
     /// Anneals a rope that has been annealed on fewer vertices.
     ///
     /// # Errors
-    /// [`Error::Setting`], [`Error::TooCoarse`].
+    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
     pub fn reanneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         settings.check()?;
         let mut rope = Rope::resampled(curve, n, settings.seed)?;
@@ -186,7 +186,7 @@ impl Tightener {
     /// Settles a rope on `n` vertices in all, starting at a tolerance of a coarser one's roughness.
     ///
     /// # Errors
-    /// [`Error::Setting`], [`Error::TooCoarse`].
+    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
     pub fn settle(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         settings.check()?;
         let rope = Rope::resampled(curve, n, settings.seed)?;

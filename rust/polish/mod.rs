@@ -139,7 +139,7 @@ impl Polish {
     /// `passing` this n, with one that is good enough to be refined.
     ///
     /// # Errors
-    /// [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], [`crate::Error::TooCoarse`].
+    /// [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], and those of [`Rope::resampled`].
     pub fn new(curve: &Curve, n: usize, passing: bool, seed: u64) -> Result<Self> {
         let given = measure(curve);
         let coarse = curve.n() == n && given.l_p < LONGEST_EDGE * n as f64;
