@@ -175,3 +175,23 @@ fn what_cannot_be_polished_is_refused() {
     let large = Curve::new(vec![(0..400).map(close).collect()]).unwrap();
     assert!(matches!(Polish::new(&large, 40, false, 0), Err(Error::TooCoarse { .. })));
 }
+
+/// A long loop, its ends arcs of radius 1.02, has far to glide on its way to a circle.
+#[test]
+fn a_long_loop_glides_to_a_circle_in_as_many_steps_as_it_takes() {
+    for (half, n) in [(15., 120), (20., 160), (20., 240)] {
+        let (w, ends) = (1.02, 1.02 * PI);
+        let length = 2. * (2. * half + ends);
+        let vertex = |k: usize| {
+            let s = (k as f64 + 0.5) / n as f64 * length;
+            let (side, s) = if s < 0.5 * length { (1., s) } else { (-1., s - 0.5 * length) };
+            let angle = (s - 2. * half).max(0.) / w;
+            side * DVec3::new(s.min(2. * half) - half + w * angle.sin(), -w * angle.cos(), 0.)
+        };
+        let polish = polished(&Curve::new(vec![(0..n).map(vertex).collect()]).unwrap(), n);
+        let status = polish.status();
+        assert_eq!(status.outcome, Outcome::Tight, "{half} {n} {status:?}");
+        let circumscribed = 2. * n as f64 * (PI / n as f64).tan();
+        assert!((status.best.l_p - circumscribed).abs() < 1e-6, "{half} {n} {status:?}");
+    }
+}

@@ -211,7 +211,7 @@ def test_a_trial_that_fails_is_told(folder: Path, sono: Sono, monkeypatch: pytes
     monkeypatch.setattr(Run, "_engine", engine)
     result = sono("tighten", "3_1.txt", "-n", "60", "--trials", "3", "--set", "anneal_sweeps=5000")
     assert (result.exit_code, result.stdout.splitlines()[1].split("\t")[-1]) == (0, "tight")
-    assert result.stderr.endswith("; the shortest was taken; 1 failed: index out of bounds\n")
+    assert result.stderr.endswith("; the best was taken; 1 failed: index out of bounds\n")
     assert "method both  trials 3 " in (folder / "3_1.n60.txt").read_text()
 
 

@@ -350,3 +350,15 @@ def test_the_least_n_is_told_and_will_do() -> None:
     needed = caught.value.needed or 0
     assert 10 < needed < 17
     assert tighten(library.start("3_1"), needed).converged
+
+
+@pytest.mark.parametrize("knot", ["3_1", "4_1"])
+def test_ropes_of_the_coarsest_edges_are_tight_one_after_another(knot: str) -> None:
+    """What holds a rope on few beads is nothing to begin the next few with."""
+    least = {"3_1": 14, "4_1": 21}[knot]
+    run = Run(library.start(knot), list(range(least, least + 6)), {}, trials=4)
+    while run.targets:
+        tight = run.tighten()
+        assert tight.converged, run.targets[0]
+        assert tight.measures.dispersion < 1e-6
+        run.next_target()

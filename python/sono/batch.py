@@ -47,6 +47,9 @@ UNFINISHED = 100
 SUPERSEDED = 1e-4
 """unless their L_c is shorter by more than this share."""
 
+GROWTH = 1.15
+"""By this factor at most, as far as is known, a rope with an L_c is longer than one too coarse for it."""
+
 TIGHT, SETTLED, STUCK, STOPPED = "tight", "settled", "stuck", "stopped"
 """What became of a rope: forces in balance, SONO's tolerance reached, neither, or not yet."""
 
@@ -284,7 +287,7 @@ class _Task:
         self.file = file
         self.todo = todo
         self.identity = [_origin(job, file), *job.outputs]
-        self.told = False
+        self.told: list[str] = []
         self.failed: dict[int, str] = {}
         self.run = self.restored() or self.begun()
         self.end = time.monotonic() + (job.time_limit or math.inf)
@@ -321,7 +324,7 @@ class _Task:
                         yield Result(row, unwritten + self.way_on())
                         return
                     self.tidy(self.job.outputs[n], tight)
-                    yield _judged(self.job, row, self.tried(tight))
+                    yield _judged(self.job, row, self.noted(tight))
             self.run.next_target()
         if self.job.checkpoint:
             with suppress(OSError):
@@ -353,8 +356,22 @@ class _Task:
         place = unwritten or f"the best state so far, n = {best.measures.n}, is in {output}"
         return Result(row, f"{self.job.name}: {why}; {place}{self.way_on()}")
 
-    def tried(self, tight: Tight) -> str | None:
-        """Say once how the curve was made ready, which shapes the trials found, and which of them failed."""
+    def noted(self, tight: Tight) -> str | None:
+        """Say what the row does not: once for all n of a shape how it was found, and why there is no L_c."""
+        tried = self.tried(tight)
+        notes = [] if tried == self.told else tried
+        self.told = tried
+        measures = tight.measures
+        if measures.l_c is None:
+            enough = math.ceil(GROWTH * measures.l_p / (math.sqrt(2) * measures.r_s))
+            notes += [
+                f"edges of {measures.dl / measures.r_s:.3f} radii are too long for an inscribed knot; "
+                f"about {enough} vertices have an L_c"
+            ]
+        return f"{self.job.name}: {'; '.join(notes)}" if notes else None
+
+    def tried(self, tight: Tight) -> list[str]:
+        """Say how the curve was made ready, which shapes the trials found, and which of them failed."""
         notes = []
         if tight.loosened:
             notes += ["as it is the curve holds only a thin rope; it was loosened first, by isotopic moves"]
@@ -363,11 +380,9 @@ class _Task:
             hits = ", ".join(f"{length} ({times} of them)" for length, times in found.items())
             trials = f"{len(tight.shapes)} trials at n = {sum(map(len, self.run.shape or []))}"
             lost = "".join(f"; {times} failed: {why}" for why, times in Counter(tight.failed).items())
-            notes += [f"{trials} ended at L_a {hits}; the shortest was taken{lost}"]
-        if self.told or not notes:
-            return None
-        self.told = True
-        return f"{self.job.name}: {'; '.join(notes)}"
+            length = "L_p" if self.run.shape and measure(self.run.shape).l_a is None else "L_a"
+            notes += [f"{trials} ended at {length} {hits}; the best was taken{lost}"]
+        return notes
 
     def deliver(self, n: int, tight: Tight, status: str) -> tuple[Row, str | None]:
         """Write what was asked for at n."""

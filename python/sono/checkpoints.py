@@ -16,7 +16,7 @@ from sono import formats
 from sono.formats import FormatError
 from sono.invariants import Curve
 
-VERSION = 3
+VERSION = 4
 """Of the state's content; one that was written with another is refused."""
 
 

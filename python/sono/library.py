@@ -42,9 +42,9 @@ SAME_SIZE = 16
 SIZES = 4
 """Variants drawn from arc presentations: so many have as few columns as possible, so many one more, ..."""
 
-_TORUS = re.compile(r"t\s*\(\s*(-?\d{1,15})\s*,\s*(-?\d{1,15})\s*\)", re.IGNORECASE)
-_CHAIN = re.compile(r"chain\s*(\d{1,15})", re.IGNORECASE)
-_BRAID = re.compile(r"-?\d{1,15}([\s,]+-?\d{1,15})+")
+_TORUS = re.compile(r"t\s*\(\s*(-?\d{1,999})\s*,\s*(-?\d{1,999})\s*\)", re.IGNORECASE)
+_CHAIN = re.compile(r"chain\s*(\d{1,999})", re.IGNORECASE)
+_BRAID = re.compile(r"-?\d{1,999}([\s,]+-?\d{1,999})+")
 _KNOTINFO = re.compile(r"1[123][an]_\d+")
 
 

@@ -54,6 +54,9 @@ radii: its trials take seconds, each ends in another shape, and a search goes fu
 SAME_SHAPE = 1e-5
 """Relative difference in L_a up to which two shapes count as the same."""
 
+UNEQUAL = 1e-3
+"""Dispersion above which a shape is second to one of equal edges, which its length does not compare with."""
+
 OFFSETS = 3
 OFFSETS_TO = 1000
 """Offsets along the rope from which the last n is refined, up to this n: beads settle in other grooves each
@@ -68,6 +71,10 @@ MOMENT = 0.3
 
 FINER = 4
 """A state in which a run was stopped has at most so many times the vertices that were asked for."""
+
+HOPELESS = 1.3
+"""A run whose first trial needs so many times the vertices asked for makes no other: what trials from one
+curve need differs by a few percent as a rule, and by a sixth at most as far as is known."""
 
 HOT = 0.5
 """Violation tolerated at the start of every other trial's anneal; it crosses higher barriers."""
@@ -334,16 +341,18 @@ class Run:
         self.targets.pop(0)
         if not self.targets:
             return
+        measures = _core.measure(self.curve)
+        edge = measures.l_p / (measures.n * measures.r_s)
         if self.method == "sono" and self.shape:
-            measures = _core.measure(self.curve)
-            fine = reached and measures.l_p / measures.n < FINE
+            fine = reached and edge < FINE
             self.rungs = self._climb_to_target() if fine else self._anneal()
-        elif reached or self.method == "polish":
+        elif self.method == "polish" or (reached and edge < COARSE):
             self.rungs = self._climb_to_target()
-        elif self.shape:  # it could not be refined to that n
+        elif self.shape and not reached:  # it could not be refined to that n
             self.curve, self.rungs = self.shape, self._climb_to_target()
-        else:
-            self.curve, self.failed, self.rungs = self.start, [], [("collapse", 0)]
+        else:  # what suits so few beads may not suit more of them
+            self.curve, self.rungs = self.start, [("collapse", 0)]
+            self.shape, self.shapes, self.failed = None, [], []
 
     def best(self) -> Tight:
         """Return the best state as `tighten` was stopped, as unconverged as it is, without forces.
@@ -511,9 +520,8 @@ class Run:
             self.worker, self.rival, self.offset = self.rival, None, OFFSETS
             return
         few = self.targets[0]
-        hopeless = (
-            isinstance(error, CurveError) and not self.shapes and (error.needed or math.inf) > 1.3 * few
-        )
+        needed = error.needed or math.inf if isinstance(error, CurveError) else 0
+        hopeless = not self.shapes and needed > HOPELESS * few
         if self.method != "both" or stage in ("climb", "polish") or hopeless:
             raise error
         self.failed.append(str(error))
@@ -541,11 +549,10 @@ class Run:
         return [("anneal", min(n, max(int(length / edge), 3 * len(self.curve)))), ("trial", n)]
 
     def _compare(self, measures: Measures) -> None:
-        """Keep the shape of a trial if it is the shortest."""
-        length = measures.l_a or measures.l_p
-        if self.shape is None or length < min(self.shapes):
+        """Keep the shape of a trial if it is the best."""
+        if self.shape is None or _rank_of_shape(measures) < _rank_of_shape(_core.measure(self.shape)):
             self.shape = self.curve
-        self.shapes.append(length)
+        self.shapes.append(measures.l_a or measures.l_p)
 
     def _enough(self) -> bool:
         """Tell whether another trial is not worth it."""
@@ -649,6 +656,11 @@ def _rank(polish: Polish) -> tuple[bool, float]:
     """Order tight ropes before others, then the shorter before the longer."""
     status = polish.status()
     return status.outcome != "tight", status.best.l_p
+
+
+def _rank_of_shape(measures: Measures) -> tuple[bool, bool, float]:
+    """Order shapes of equal edges before others, those with an L_c before others, then by length."""
+    return measures.dispersion > UNEQUAL, measures.l_a is None, measures.l_a or measures.l_p
 
 
 def _is_hot(trial: int) -> bool:

@@ -13,7 +13,7 @@ machines, and a search gives the same minima whatever the number of workers.
 import json
 import math
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, Self, TypeAlias, TypeVar
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from sono import library
 from sono._core import Collapse, Measures, PanicError, Polish, Tightener
 from sono.checkpoints import packed, unpacked
-from sono.invariants import Curve, Fingerprint, fingerprint
+from sono.invariants import Curve, Fingerprint, TooEntangledError, fingerprint
 from sono.pipeline import HOT, SLICE, Stopped, measure, tighten
 from sono.scramble import scramble
 
@@ -142,10 +142,13 @@ class Source:
 
         A nameless curve is collapsed first, as a long and thin one cannot be scrambled. Raises `ValueError`.
         """
-        type = fingerprint(curve)
         if name and library.has_variants(name):
-            return cls(name, curve, type)
-        return cls(None, _done(Collapse(curve, False, "{}"), watch).best(), type)
+            return cls(name, curve, fingerprint(curve))
+        type = None
+        with suppress(TooEntangledError):  # the collapsed rope is less so, as a rule
+            type = fingerprint(curve)
+        collapsed = _done(Collapse(curve, False, "{}"), watch).best()
+        return cls(None, collapsed, type or fingerprint(collapsed))
 
     def start(self, variant: int, watch: Watch = unwatched) -> Curve:
         """Return a starting conformation; variant 0 is the curve itself."""
@@ -353,8 +356,7 @@ class Search:
         reseating = [submit(reseat, minimum) for minimum in before]
         for minimum, seated in zip(before, reseating, strict=True):
             if again := self.confirmed(seated(), source):
-                self.minima = [other for other in self.minima if other is not minimum]
-                self._merge(again)
+                self._merge(again, [other for other in self.minima if other is not minimum])
         yield
 
     def _variant(self, source: Source, trial: int) -> int:
@@ -413,20 +415,29 @@ class Search:
             same = [other for other in self.shapes if _alike(other.radii, shape.radii)]
             self.shapes = [other for other in self.shapes if other not in same]
             if found := self.confirmed(found, source):
-                self._merge(replace(found, hits=sum(shape.hits for shape in same or [shape])))
+                hits = sum(shape.hits for shape in same or [shape])
+                self._merge(replace(found, hits=hits), self.minima)
 
-    def _merge(self, found: Minimum) -> None:
+    def _merge(self, found: Minimum, minima: list[Minimum]) -> None:
+        """Keep the best of these and another."""
+        # A new list, as other threads look at the first.
+        self.minima = merged([*minima, found])[: self.kept]
+
+
+def merged(minima: Iterable[Minimum]) -> list[Minimum]:
+    """Return minima with those made one that are the same, the shortest first."""
+    apart: list[Minimum] = []
+    for found in minima:
         radii = radii_of_gyration(found.curve)
-        for i, known in enumerate(self.minima):
+        for i, known in enumerate(apart):
             near = abs(known.length - found.length) < SAME_LENGTH * found.length
             if near and _alike(radii_of_gyration(known.curve), radii):
                 shorter, met = min(known, found, key=rank), (known.met + found.met)[-MET:]
-                self.minima[i] = replace(shorter, met=met, hits=known.hits + found.hits)
+                apart[i] = replace(shorter, met=met, hits=known.hits + found.hits)
                 break
         else:
-            self.minima.append(found)
-        # A new list, as other threads look at the first.
-        self.minima = sorted(self.minima, key=rank)[: self.kept]
+            apart.append(found)
+    return sorted(apart, key=rank)
 
 
 def _done(worker: Worker, watch: Watch) -> Worker:

@@ -40,7 +40,7 @@ from sono.search import (
     Source,
     finish,
     has_edges,
-    rank,
+    merged,
     same_edges,
 )
 from sono.tables import Row, printable
@@ -283,7 +283,7 @@ class _Hunt:
             minima = [new or old for new, old in zip_longest(finer, minima)]
             # Minima are compared on edges of one length.
             minima = list(filter(self.has_edges, minima)) or minima
-        return sorted(minima, key=rank)
+        return merged(minima)
 
     def has_edges(self, minimum: Minimum) -> bool:
         """Tell whether a rope has the edges that were asked for."""

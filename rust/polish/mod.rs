@@ -64,6 +64,8 @@ const LONGEST_WAY: f64 = 0.1;
 pub(crate) const SHORTEST_EDGE: f64 = 0.9;
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
 const UNEQUAL: f64 = 0.04;
+/// Dispersion from which on a rope in balance has edges without tension; it is no rope of equal edges.
+const SLACK: f64 = 1e-4;
 /// Beads of a rope that is made of a curve which is none.
 const MOST_BEADS: usize = 20_000;
 /// Iterations in which a rope gets tight or never does.
@@ -73,6 +75,8 @@ const MOST_ITERATIONS: u64 = 2000;
 const PATIENCE: u64 = 200;
 const MORE_ROOM: f64 = 10.;
 const MOST_RESTARTS: u32 = 3;
+/// One that still falls below this share of its length meanwhile is left to glide.
+const FAST: f64 = 0.9;
 
 /// Where a [`Polish`] stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,8 +118,9 @@ pub struct Polish {
     way: f64,
     newton: Newton,
     iterations: u64,
-    /// How many of them there were when it began, perhaps anew.
+    /// How many of them there were when it began, perhaps anew, and its L_p then.
     begun: u64,
+    length_then: f64,
     residual: f64,
     excess: f64,
     restarts: u32,
@@ -172,6 +177,7 @@ impl Polish {
             newton: Newton::default(),
             iterations: 0,
             begun: 0,
+            length_then: measured.l_p,
             residual: f64::MAX,
             excess: f64::MAX,
             restarts: 0,
@@ -185,16 +191,21 @@ impl Polish {
         Ok(polish)
     }
 
-    /// Begins at the best state so far with barrier parameter `mu`.
+    /// Begins at the best state so far with barrier parameter `mu`, or the largest that edges have room for.
     fn begin(&mut self, mu: f64) {
         let mut curve = self.best();
+        let room = longest(&curve).into_iter().enumerate().map(|(c, longest)| {
+            let shortest = curve.edge_lengths(c).fold(f64::MAX, f64::min);
+            0.5 * (shortest / SHORTEST_EDGE - longest)
+        });
+        let mu = room.fold(mu, f64::min);
         // Room for the barrier: an edge of tension 1 has the slack 2 l mu, contacts get some too.
         curve.scale(1. + 0.02 * mu * curve.n() as f64 / curve.length());
         self.l = longest(&curve).into_iter().map(|l| l + mu).collect();
         self.chain = chain_terms(&curve, &self.l).map(|t| mu / t.g).collect();
         self.contacts.clear();
         (self.curve, self.mu, self.first_mu) = (curve, mu, mu);
-        self.begun = self.iterations;
+        (self.begun, self.length_then) = (self.iterations, self.shortest);
     }
 
     /// Whether a restored state is one that can go on.
@@ -210,7 +221,9 @@ impl Polish {
             && self.chain.iter().chain(self.contacts.iter().map(|c| &c.z)).all(|z| z.is_finite())
             && contacts.clone().is_sorted_by(|a, b| a < b)
             && contacts.clone().all(|(i, j)| i < j && (j as usize) < n)
-            && [self.mu, self.last_mu, self.first_mu, self.way, self.thickness].iter().all(positive)
+            && [self.mu, self.last_mu, self.first_mu, self.way, self.thickness, self.length_then]
+                .iter()
+                .all(positive)
             && self.newton.is_sound(n)
     }
 
@@ -232,7 +245,7 @@ impl Polish {
         let z = self.multipliers();
         while self.is_centred(&terms, &z) {
             if self.mu <= self.last_mu {
-                self.end(Outcome::Tight);
+                self.end();
                 return self.outcome;
             }
             self.mu = (FALL * self.mu).min(self.mu.powf(FALL_POWER)).max(self.last_mu);
@@ -241,10 +254,13 @@ impl Polish {
         let step = self.newton.step(curve, l, &terms, &z, (self.mu, self.range()), &bystanders);
         let moved = step.is_some_and(|step| self.take(step, &terms, &z, &bystanders));
         self.iterations += 1;
-        let gliding = self.mu == self.first_mu && self.iterations == self.begun + PATIENCE;
+        let mut gliding = self.mu == self.first_mu && self.iterations == self.begun + PATIENCE;
+        if gliding && self.shortest < FAST * self.length_then {
+            (self.begun, self.length_then, gliding) = (self.iterations, self.shortest, false);
+        }
         if !moved && self.residual <= TIGHT && self.mu <= self.last_mu {
             // As far as the digits go.
-            self.end(Outcome::Tight);
+            self.end();
         } else if self.iterations == MOST_ITERATIONS || (!moved && self.restarts == MOST_RESTARTS) {
             self.outcome = Outcome::Stuck;
         } else if !moved || (gliding && self.restarts + 1 < MOST_RESTARTS) {
@@ -256,10 +272,13 @@ impl Polish {
     }
 
     /// Ends with the rope as it is, though one before may have been shorter in the last digit.
-    fn end(&mut self, outcome: Outcome) {
+    fn end(&mut self) {
         self.best.clone_from(&self.curve);
-        self.thickness = measure(&self.best).r_s;
-        self.outcome = outcome;
+        let measures = measure(&self.best);
+        self.thickness = measures.r_s;
+        // Forces may balance without tension in some edge of a coarse rope, which is shorter then.
+        let slack = self.last_mu == LAST_MU && measures.dispersion > SLACK;
+        self.outcome = if slack { Outcome::Stuck } else { Outcome::Tight };
     }
 
     fn multipliers(&self) -> Vec<f64> {
