@@ -30,3 +30,8 @@ def test_scramble_refuses_a_curve_that_touches_itself() -> None:
     eight = np.array([[0.0, 0, 0], [1, 1, 0], [1, -1, 0], [0, 0, 0], [-1, 1, 0], [-1, -1, 0]])
     with pytest.raises(ValueError, match="touches itself"):
         scramble([eight], seed=0)
+
+
+def test_scramble_refuses_what_would_take_all_memory() -> None:
+    with pytest.raises(ValueError, match=r"20,002 vertices are too many to scramble; 5,000 are the most"):
+        scramble([np.random.default_rng(0).normal(size=(20_002, 3))], seed=0)

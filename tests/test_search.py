@@ -8,12 +8,13 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import polygons
 import pytest
 
-from sono import _core, library, measure, pipeline, search
+from sono import _core, invariants, library, measure, pipeline, search
 from sono._core import CurveError, PanicError
 from sono.checkpoints import packed
-from sono.invariants import fingerprint
+from sono.invariants import Curve, Fingerprint, fingerprint
 from sono.pipeline import Stopped
 from sono.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine, reseat
 from sono.workers import Threads
@@ -475,3 +476,26 @@ def test_restored_minima_are_measured_again() -> None:
     for key, value in {"minima": 3, "shapes": [{}], "refining": [[1]], "more": 1}.items():
         with pytest.raises((TypeError, ValueError, LookupError)):
             Search.restore(found.state() | {key: value})
+
+
+def test_a_minimum_found_twice_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = Made(monkeypatch).curve
+    thrice = [search.Minimum(k, 30 + 1e-3 * k, True, 0, curve, [], hits=k) for k in (2, 1, 3)]
+    other = search.Minimum(4, 30.1, True, 0, curve, [], hits=4)
+    stuck = search.Minimum(5, 29, False, None, curve, [], hits=5)
+    found = search.merged([thrice[0], stuck, other, *thrice[1:]])
+    assert [(minimum.variant, minimum.hits) for minimum in found] == [(1, 6), (4, 4), (5, 5)]
+
+
+def test_a_tangle_is_told_once_it_is_collapsed(monkeypatch: pytest.MonkeyPatch) -> None:
+    tangle, told = [polygons.entangled(30, 3)], []
+
+    def entangled_at_first(curve: Curve) -> Fingerprint:
+        told.append(curve)
+        if len(told) == 1:
+            raise invariants.TooEntangledError
+        return fingerprint(curve)
+
+    monkeypatch.setattr(search, "fingerprint", entangled_at_first)
+    assert Source.of(tangle).type == fingerprint(tangle)
+    assert told[1] is not tangle

@@ -12,6 +12,9 @@ from sono.closures import Curve
 Map: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """A map of space, which takes points (m, 3) to points (m, 3)."""
 
+MOST = 5_000
+"""Vertices of a curve that is scrambled, whose distances are all compared: 1 GB."""
+
 
 def scramble(curve: Curve, seed: int, swirls: int = 40, watch: Callable[[], None] = lambda: None) -> Curve:
     """Return `curve` entangled by random swirls of space, in the same unit and with more vertices.
@@ -21,8 +24,10 @@ def scramble(curve: Curve, seed: int, swirls: int = 40, watch: Callable[[], None
     type of the image because its edges are halved until they are shorter than half a rope radius, and a swirl
     after which the curve would not hold a rope of that radius, 600 radii long at most, is left out. The same
     seed gives the same curve. `watch` is called before each swirl; what it raises passes through. Raises
-    ValueError for a curve that touches itself, or too thin a rope.
+    ValueError for a curve that touches itself, or too thin a rope, or more than `MOST` vertices.
     """
+    if (n := sum(map(len, curve))) > MOST:
+        raise ValueError(f"{n:,} vertices are too many to scramble; {MOST:,} are the most")
     random = np.random.default_rng(seed)
     curve, radius = _rope(curve)
     for _ in range(swirls):
