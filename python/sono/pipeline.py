@@ -55,7 +55,8 @@ SAME_SHAPE = 1e-5
 """Relative difference in L_a up to which two shapes count as the same."""
 
 UNEQUAL = 1e-3
-"""Dispersion above which a shape is second to one of equal edges, which its length does not compare with."""
+"""Dispersion above which a shape is second to one of equal edges, as its length does not compare: forces may
+balance without tension in some edge of a coarse rope, which is shorter then."""
 
 OFFSETS = 3
 OFFSETS_TO = 1000

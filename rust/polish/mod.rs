@@ -64,8 +64,6 @@ const LONGEST_WAY: f64 = 0.1;
 pub(crate) const SHORTEST_EDGE: f64 = 0.9;
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
 const UNEQUAL: f64 = 0.04;
-/// Dispersion from which on a rope in balance has edges without tension; it is no rope of equal edges.
-const SLACK: f64 = 1e-4;
 /// Beads of a rope that is made of a curve which is none.
 const MOST_BEADS: usize = 20_000;
 /// Iterations in which a rope gets tight or never does.
@@ -274,11 +272,8 @@ impl Polish {
     /// Ends with the rope as it is, though one before may have been shorter in the last digit.
     fn end(&mut self) {
         self.best.clone_from(&self.curve);
-        let measures = measure(&self.best);
-        self.thickness = measures.r_s;
-        // Forces may balance without tension in some edge of a coarse rope, which is shorter then.
-        let slack = self.last_mu == LAST_MU && measures.dispersion > SLACK;
-        self.outcome = if slack { Outcome::Stuck } else { Outcome::Tight };
+        self.thickness = measure(&self.best).r_s;
+        self.outcome = Outcome::Tight;
     }
 
     fn multipliers(&self) -> Vec<f64> {
