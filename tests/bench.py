@@ -8,7 +8,7 @@ import time
 
 import sono
 from sono._core import Polish, Tightener, measure
-from sono.pipeline import Method, Progress, Stopped
+from sono.tightening.run import Method, Progress, Stopped
 
 GOAL = 32.7402
 """L_p of the trefoil at n = 480 up to which SONO and the polish race; the paper has 32.74005."""

@@ -11,8 +11,10 @@ from typing import Any, TypeAlias
 import pytest
 from click.testing import CliRunner, Result
 
-from sono import formats, library, pipeline
+from sono import formats
 from sono.cli import main
+from sono.starts import names as library
+from sono.tightening import run as pipeline
 
 Sono: TypeAlias = Callable[..., Result]
 Spawn: TypeAlias = Callable[..., subprocess.Popen[str]]

@@ -16,8 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sono import batch, library
 from sono.formats import FormatError, text, vect
+from sono.jobs import tighten as batch
+from sono.starts import names as library
 
 SLOW = 5.0
 """Seconds after which a file counts as a hang."""

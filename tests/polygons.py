@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sono import library
+from sono.starts import names as library
 
 Vertices = NDArray[np.float64]
 

@@ -5,10 +5,12 @@ from pathlib import Path
 import pytest
 from conftest import Sono
 
-from sono import formats, library, measure, search, tables
+from sono import formats, measure, tables
 from sono import tighten as sono_tighten
-from sono.atlas import Atlas, confirmed_type
-from sono.invariants import fingerprint
+from sono.invariants.identify import fingerprint
+from sono.jobs.atlas import Atlas, confirmed_type
+from sono.searching import search
+from sono.starts import names as library
 
 KNOTS = Path(__file__).parent.parent / "knots"
 SHIPPED = Atlas(KNOTS).rows()

@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sono import batch, checkpoints, formats, library
+from sono import formats
 from sono._core import PanicError
-from sono.batch import Job
 from sono.formats import FormatError
-from sono.pipeline import Progress, Run, Stage, Stopped
+from sono.jobs import checkpoints
+from sono.jobs import tighten as batch
+from sono.jobs.tighten import Job
+from sono.starts import names as library
+from sono.tightening.run import Progress, Run, Stage, Stopped
 
 pytestmark = pytest.mark.usefixtures("slices")
 

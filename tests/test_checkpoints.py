@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sono import checkpoints, library
-from sono.checkpoints import load, packed, save, unpacked
 from sono.formats import FormatError
+from sono.jobs import checkpoints
+from sono.jobs.checkpoints import load, packed, save, unpacked
+from sono.starts import names as library
 
 STATE = {"seconds": 0.1 + 0.2, "n": [1, 2], "curve": packed(library.start("Hopf")), "none": None}
 

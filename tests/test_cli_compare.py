@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 from conftest import QUICK, Sono
 
-from sono import formats, library, published, tables
+from sono import formats, tables
+from sono.starts import names as library
+from sono.tables import published
 
 ATLAS = Path(__file__).parent.parent / "knots" / "atlas.tsv"
 

@@ -9,8 +9,12 @@ from pathlib import Path
 import pytest
 from conftest import Sono, Spawn, vertices
 
-from sono import checkpoints, formats, library, measure, search, searches, tables
-from sono.invariants import fingerprint
+from sono import formats, measure, tables
+from sono.invariants.identify import fingerprint
+from sono.jobs import checkpoints
+from sono.jobs import search as searches
+from sono.searching import search
+from sono.starts import names as library
 
 PROMPT = 8
 """Seconds, four times what a stop may take on a machine with nothing else to do."""
@@ -364,7 +368,7 @@ def test_what_nobody_expected_stays_with_its_knot(
     def broken(*_: object) -> None:
         raise RuntimeError("lost")
 
-    monkeypatch.setattr("sono.searches.finish", broken)
+    monkeypatch.setattr("sono.jobs.search.finish", broken)
     result = sono("search", "3_1", "Hopf", *ONE, "--dl", "0.1")
     assert result.exit_code == 1
     assert result.stderr.count("unexpected RuntimeError: lost") == 2

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from conftest import Sono
 
-from sono import closures, formats, library
-from sono.closures import Curve
-from sono.scramble import scramble
+from sono import formats
+from sono.starts import closures
+from sono.starts import names as library
+from sono.starts.closures import Curve
+from sono.starts.scramble import scramble
 
 
 def same(path: Path, curve: Curve) -> bool:

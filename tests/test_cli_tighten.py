@@ -14,10 +14,13 @@ from typing import Any
 import pytest
 from conftest import QUICK, Sono, Spawn, vertices
 
-from sono import batch, checkpoints, formats, library, measure, tables
+from sono import formats, measure, tables
 from sono._core import PanicError
 from sono.cli import options
-from sono.pipeline import Run
+from sono.jobs import checkpoints
+from sono.jobs import tighten as batch
+from sono.starts import names as library
+from sono.tightening.run import Run
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
 

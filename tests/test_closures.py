@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sono.closures import Strokes, braid, chain, grid, shuffled, torus
-from sono.invariants import fingerprint
-from sono.library import start
+from sono.invariants.identify import fingerprint
+from sono.starts.closures import Strokes, braid, chain, grid, shuffled, torus
+from sono.starts.names import start
 
 UNKNOT = fingerprint(chain(1))
 TREFOIL: Strokes = [(0, 2), (1, 3), (2, 4), (0, 3), (1, 4)]

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 from conftest import Sono, Spawn, vertices
 
-from sono import tables, workers
+from sono import tables
+from sono.jobs import workers
 
 pytest.importorskip("distributed")
 

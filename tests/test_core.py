@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sono import _core, library
+from sono import _core
+from sono.starts import names as library
 
 ENDLESS = json.dumps({"anneal_sweeps": 4_000_000_000})
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sono import library
 from sono.formats import FormatError, text
 from sono.formats.doubts import closing_edge, jumps
+from sono.starts import names as library
 
 Floats = NDArray[np.float64]
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from sono.flypes import flyped
-from sono.invariants import fingerprint
-from sono.library import start, table
-from sono.planar import Diagram, faces, lifted
+from sono.invariants.identify import fingerprint
+from sono.starts.flypes import flyped
+from sono.starts.names import start, table
+from sono.starts.planar import Diagram, faces, lifted
 
 DIAGRAMS: dict[str, Diagram] = {
     row["knot"]: [(a, b, c, d) for a, b, c, d in (map(int, code.split(",")) for code in row["pd"].split())]

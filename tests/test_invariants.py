@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sono.closures import braid, chain, mirror, torus
-from sono.invariants import (
+from sono.invariants.identify import (
     ORDERS,
     Floats,
     alexander,
@@ -21,8 +20,9 @@ from sono.invariants import (
     signature,
     simplify,
 )
-from sono.library import start, table
-from sono.scramble import scramble
+from sono.starts.closures import braid, chain, mirror, torus
+from sono.starts.names import start, table
+from sono.starts.scramble import scramble
 
 ROOTS = [cmath.exp(2j * math.pi / k) for k in (2, 3, 5)]
 

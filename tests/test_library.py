@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sono.closures import braid, chain, mirror, torus
-from sono.invariants import Curve, Floats, alexander, diagram, fingerprint
-from sono.library import names, start, table
+from sono.invariants.identify import Curve, Floats, alexander, diagram, fingerprint
+from sono.starts.closures import braid, chain, mirror, torus
+from sono.starts.names import names, start, table
 
 KNOTS = Path(__file__).parent.parent / "knots"
 FILES = {

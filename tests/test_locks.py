@@ -12,14 +12,16 @@ from pathlib import Path
 import pytest
 from conftest import QUICK, Sono, Spawn
 
-from sono import formats, library, locks
-from sono.locks import NAME, Claims, Taken
+from sono import formats
+from sono.jobs import locks
+from sono.jobs.locks import NAME, Claims, Taken
+from sono.starts import names as library
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
 
 HOLDER = """
 import sys, time
-from sono.locks import Claims
+from sono.jobs.locks import Claims
 with Claims() as claims:
     claims.take(sys.argv[1:])
     print("held", flush=True)
@@ -28,7 +30,7 @@ with Claims() as claims:
 
 RIVAL = """
 import os, random, sys, time
-from sono.locks import Claims, Taken
+from sono.jobs.locks import Claims, Taken
 won = 0
 while won < 40:
     try:

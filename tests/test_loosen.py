@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from polygons import entangled, equilateral, gaussian, knotted_arc, lattice, meander
 
-from sono import _core, library, tighten
+from sono import _core, tighten
 from sono._core import Collapse, CurveError
-from sono.invariants import (
+from sono.invariants.identify import (
     ORDERS,
     Curve,
     Floats,
@@ -20,6 +20,7 @@ from sono.invariants import (
     fingerprint,
     signature,
 )
+from sono.starts import names as library
 
 Draw: TypeAlias = Callable[[int, int], Floats]
 ROOTS = [np.exp(2j * np.pi / k) for k in ORDERS]

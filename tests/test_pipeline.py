@@ -11,9 +11,12 @@ import pytest
 from polygons import entangled
 
 import sono
-from sono import invariants, library, pipeline, tighten
+from sono import tighten
 from sono._core import PanicError
-from sono.pipeline import Method, Progress, Run, Stopped, as_curve, check_settings, default_settings
+from sono.invariants import identify as invariants
+from sono.starts import names as library
+from sono.tightening import run as pipeline
+from sono.tightening.run import Method, Progress, Run, Stopped, as_curve, check_settings, default_settings
 
 QUICK = {"anneal_sweeps": 500, "settle_sweeps": 100, "tolerance": 1e-2}
 

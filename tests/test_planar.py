@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from sono import measure
-from sono.invariants import crossings, fingerprint
-from sono.library import start
-from sono.planar import Diagram, lifted
+from sono.invariants.identify import crossings, fingerprint
+from sono.starts.names import start
+from sono.starts.planar import Diagram, lifted
 
 TREFOIL: Diagram = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
 FIGURE_EIGHT: Diagram = [(4, 2, 5, 1), (8, 6, 1, 5), (6, 3, 7, 4), (2, 7, 3, 8)]

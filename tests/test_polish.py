@@ -9,7 +9,7 @@ from conftest import QUICK, Sono
 
 import sono as library
 from sono import formats
-from sono.pipeline import Run, Tight, as_curve
+from sono.tightening.run import Run, Tight, as_curve
 
 PAPER = Path(__file__).parent / "paper" / "tables.csv"
 

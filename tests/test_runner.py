@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import pytest
 
 from sono import tables
-from sono.batch import Result
 from sono.cli.runner import Batch
+from sono.jobs.tighten import Result
 
 
 @dataclass

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from sono.closures import chain
-from sono.invariants import crossings, fingerprint
-from sono.library import start
-from sono.scramble import scramble
+from sono.invariants.identify import crossings, fingerprint
+from sono.starts.closures import chain
+from sono.starts.names import start
+from sono.starts.scramble import scramble
 
 UNKNOT = fingerprint(chain(1))
 

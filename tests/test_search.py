@@ -11,13 +11,17 @@ import numpy as np
 import polygons
 import pytest
 
-from sono import _core, invariants, library, measure, pipeline, search
+from sono import _core, measure
 from sono._core import CurveError, PanicError
-from sono.checkpoints import packed
-from sono.invariants import Curve, Fingerprint, fingerprint
-from sono.pipeline import Stopped
-from sono.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine, reseat
-from sono.workers import Threads
+from sono.invariants import identify as invariants
+from sono.invariants.identify import Curve, Fingerprint, fingerprint
+from sono.jobs.checkpoints import packed
+from sono.jobs.workers import Threads
+from sono.searching import search
+from sono.searching.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine, reseat
+from sono.starts import names as library
+from sono.tightening import run as pipeline
+from sono.tightening.run import Stopped
 
 SHARE = search.GENTLE
 """The share of gentle anneals, as it is outside of these tests."""

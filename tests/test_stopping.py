@@ -15,11 +15,13 @@ import pytest
 from conftest import QUICK, Sono, Spawn
 
 import sono as package
-from sono import _core, formats, library, measure, pipeline
-from sono.closures import divided
-from sono.invariants import fingerprint
+from sono import _core, formats, measure
+from sono.invariants.identify import fingerprint
 from sono.patience import patiently
-from sono.pipeline import MOST, Progress, Run, Stopped
+from sono.starts import names as library
+from sono.starts.closures import divided
+from sono.tightening import run as pipeline
+from sono.tightening.run import MOST, Progress, Run, Stopped
 
 PROMPT = 10
 """Seconds, five times what a stop may take on a machine with nothing else to do."""
@@ -155,7 +157,8 @@ def test_a_signal_at_many_vertices(folder: Path, spawn: Spawn, number: signal.Si
 
 DEAF = """
 import time
-from sono import patience, pipeline
+from sono import patience
+from sono.tightening import run as pipeline
 from sono.cli import run
 patience.GRACE = 100
 pipeline._advanced = lambda worker: time.sleep(100)

@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sono import Tight, formats, library, tighten
-from sono.invariants import fingerprint
-from sono.scramble import scramble
+from sono import Tight, formats, tighten
+from sono.invariants.identify import fingerprint
+from sono.starts import names as library
+from sono.starts.scramble import scramble
 
 KNOTS = Path(__file__).parent.parent / "knots"
 NAMES = sorted(path.stem for path in KNOTS.glob("*.txt"))

@@ -17,26 +17,26 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sono._core import CurveError as CurveError
     from sono._core import Measures as Measures
-    from sono.library import start as start
-    from sono.pipeline import Forces as Forces
-    from sono.pipeline import Progress as Progress
-    from sono.pipeline import Tight as Tight
-    from sono.pipeline import forces as forces
-    from sono.pipeline import measure as measure
-    from sono.pipeline import tighten as tighten
+    from sono.starts.names import start as start
+    from sono.tightening.run import Forces as Forces
+    from sono.tightening.run import Progress as Progress
+    from sono.tightening.run import Tight as Tight
+    from sono.tightening.run import forces as forces
+    from sono.tightening.run import measure as measure
+    from sono.tightening.run import tighten as tighten
 
 __version__ = "0.1.0"
 
 _HOMES = {
     "CurveError": "sono._core",
-    "Forces": "sono.pipeline",
+    "Forces": "sono.tightening.run",
     "Measures": "sono._core",
-    "Progress": "sono.pipeline",
-    "Tight": "sono.pipeline",
-    "forces": "sono.pipeline",
-    "measure": "sono.pipeline",
-    "start": "sono.library",
-    "tighten": "sono.pipeline",
+    "Progress": "sono.tightening.run",
+    "Tight": "sono.tightening.run",
+    "forces": "sono.tightening.run",
+    "measure": "sono.tightening.run",
+    "start": "sono.starts.names",
+    "tighten": "sono.tightening.run",
 }
 
 __all__ = ["CurveError", "Forces", "Measures", "Progress", "Tight", "forces", "measure", "start", "tighten"]

@@ -1,4 +1,4 @@
-"""The compiled core; `sono.pipeline` is its only user.
+"""The compiled core; `sono.tightening.run` is its only user.
 
 Components are a list of (n_i, 3) float64 arrays. Lengths are in the unit of the vertices.
 """

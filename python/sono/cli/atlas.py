@@ -13,9 +13,9 @@ from sono.cli import options
 from sono.cli.runner import Batch, Show
 
 if TYPE_CHECKING:
-    from sono.atlas import Atlas
-    from sono.batch import Result
-    from sono.searches import SearchJob
+    from sono.jobs.atlas import Atlas
+    from sono.jobs.search import SearchJob
+    from sono.jobs.tighten import Result
 
 COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference", "l_c_difference", "type")
 
@@ -70,9 +70,9 @@ def command(
     a folder.
     """
     # Imported here, since numpy would make --help wait.
-    from sono import library
-    from sono.atlas import Atlas
-    from sono.searches import SearchJob, spent
+    from sono.jobs.atlas import Atlas
+    from sono.jobs.search import SearchJob, spent
+    from sono.starts import names as library
 
     atlas = Atlas(Path(folder))
     if "-" in sources:
@@ -127,8 +127,8 @@ class _AtlasJob:
 
     def results(self, show: Show) -> "Iterator[Result]":
         """Do it."""
-        from sono.batch import TIGHT, Result
-        from sono.pipeline import Stopped
+        from sono.jobs.tighten import TIGHT, Result
+        from sono.tightening.run import Stopped
 
         file = self.file
         if self.search:

@@ -40,8 +40,8 @@ def command(
     \b
       sono measure knots/tight/*.txt | sono compare -
     """
-    from sono import published
     from sono.formats import FormatError
+    from sono.tables import published
 
     count = {"l_a_difference": 0, "l_c_difference": 0, "limit_difference": 0}
     coarse: list[str] = []

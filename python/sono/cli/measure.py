@@ -27,10 +27,10 @@ def command(
     below 1e-6 for a polished one.
     """
     # Imported here, since numpy would make --help wait.
-    from sono import batch
     from sono.formats import FormatError
+    from sono.jobs import tighten as batch
     from sono.patience import patiently
-    from sono.pipeline import forces
+    from sono.tightening.run import forces
 
     if residual and "residual" not in columns:
         columns = [*columns, "residual"]

@@ -17,11 +17,11 @@ import click
 
 from sono import tables
 from sono.cli.streams import complain as complain
-from sono.locks import Claims, Taken
+from sono.jobs.locks import Claims, Taken
 from sono.tables import TableWriter
 
 if TYPE_CHECKING:
-    from sono.workers import Cluster, Threads
+    from sono.jobs.workers import Cluster, Threads
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -84,7 +84,7 @@ def _listed(path: str) -> list[str]:
 
 def tell_of_shadows(sources: Sequence[str], quiet: bool) -> None:
     """Say which sources are files called like a knot."""
-    from sono.sources import shadowed  # here, since numpy would make --help wait
+    from sono.jobs.sources import shadowed  # here, since numpy would make --help wait
 
     for source in sources if not quiet else []:
         if shadowed(source):
@@ -110,7 +110,7 @@ def parallel(jobs_help: str) -> Callable[[Function], Function]:
 
 def workers(jobs: int, cluster: str | None) -> "Threads | Cluster":
     """Threads, or the cluster at this address."""
-    from sono.workers import Cluster, Threads
+    from sono.jobs.workers import Cluster, Threads
 
     if not cluster:
         return Threads(jobs)

@@ -80,7 +80,7 @@ def command(
     always in NAME.tight.txt.
     """
     # Imported here, since numpy would make --help wait.
-    from sono.searches import SearchJob
+    from sono.jobs.search import SearchJob
 
     if force and resume:
         raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")

@@ -43,9 +43,11 @@ def command(
     has those that are built in.
     """
     # Imported here, since numpy would make --help wait.
-    from sono import closures, formats, library
+    from sono import formats
     from sono.cli import options
-    from sono.scramble import scramble
+    from sono.starts import closures
+    from sono.starts import names as library
+    from sono.starts.scramble import scramble
 
     if list_names:
         if name or word or output != "-":

@@ -12,15 +12,15 @@ import click
 from sono import tables
 from sono.cli import options
 from sono.cli.runner import Batch
-from sono.locks import Taken
+from sono.jobs.locks import Taken
 
 if TYPE_CHECKING:
-    from sono.pipeline import Method
+    from sono.tightening.run import Method
 
 
 def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int]:
     """Return numbers separated by commas in increasing order."""
-    from sono.pipeline import MOST
+    from sono.tightening.run import MOST
 
     try:
         numbers = sorted({int(number) for number in value.split(",")})
@@ -118,7 +118,7 @@ def command(
     Standard input has the NAME stdin, or else stdin-2 and so on.
     """
     # Imported here, since numpy would make --help wait.
-    from sono.batch import Job, free_name
+    from sono.jobs.tighten import Job, free_name
 
     settings = _settings(seed, pairs)
     if force and resume:
@@ -207,7 +207,7 @@ def _checkpoint(folder: str | None, name: str) -> Path | None:
 
 
 def _settings(seed: int, pairs: tuple[str, ...]) -> dict[str, Any]:
-    from sono.pipeline import check_settings, default_settings
+    from sono.tightening.run import check_settings, default_settings
 
     defaults = default_settings()
     settings = {}

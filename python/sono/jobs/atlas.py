@@ -16,13 +16,14 @@ from pathlib import Path
 
 import numpy as np
 
-from sono import formats, library, published, tables
-from sono.batch import KEPT_RESIDUAL, TIGHT, measured, says_tight, title
+from sono import formats, tables
 from sono.formats import FormatError
-from sono.invariants import Curve, fingerprint, homfly
-from sono.pipeline import Tight, forces, measure, tighten
-from sono.search import FINE_EDGE, Watch, same_edges, unwatched
-from sono.tables import Row, Value
+from sono.invariants.identify import Curve, fingerprint, homfly
+from sono.jobs.tighten import KEPT_RESIDUAL, TIGHT, measured, says_tight, title
+from sono.searching.search import FINE_EDGE, Watch, same_edges, unwatched
+from sono.starts import names as library
+from sono.tables import Row, Value, published
+from sono.tightening.run import Tight, forces, measure, tighten
 
 FINEST_EDGE = 0.03
 """Edge length at which L_c is given once more, in radii."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from sono import formats
 from sono.formats import FormatError
-from sono.invariants import Curve
+from sono.invariants.identify import Curve
 
 VERSION = 4
 """Of the state's content; one that was written with another is refused."""

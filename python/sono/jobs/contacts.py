@@ -1,8 +1,8 @@
 """The forces in a tight rope as a table: which beads press against each other, and how hard."""
 
 from sono import formats
-from sono.invariants import Curve
-from sono.pipeline import Forces
+from sono.invariants.identify import Curve
+from sono.tightening.run import Forces
 
 HEADER = """\
 # Forces in a rope of radius 1, in units of its mean tension; beads count from 0 through all components.

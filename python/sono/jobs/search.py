@@ -12,8 +12,11 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-from sono import checkpoints, formats, sources
-from sono.batch import (
+from sono import formats
+from sono.formats import FormatError, VertexFile, is_stream
+from sono.invariants.identify import fingerprint
+from sono.jobs import checkpoints, sources
+from sono.jobs.tighten import (
     KEPT_RESIDUAL,
     STOPPED,
     STUCK,
@@ -25,11 +28,9 @@ from sono.batch import (
     says_tight,
     title,
 )
-from sono.formats import FormatError, VertexFile, is_stream
-from sono.invariants import fingerprint
+from sono.jobs.workers import Workers
 from sono.patience import patiently, within
-from sono.pipeline import Stopped, forces, measure
-from sono.search import (
+from sono.searching.search import (
     FAILURES,
     FINE_EDGE,
     KEPT,
@@ -44,7 +45,7 @@ from sono.search import (
     same_edges,
 )
 from sono.tables import Row, printable
-from sono.workers import Workers
+from sono.tightening.run import Stopped, forces, measure
 
 ENDLESS = 10**6
 """Trials of a search that a time limit ends."""

@@ -4,8 +4,9 @@ import os
 
 import numpy as np
 
-from sono import formats, library
+from sono import formats
 from sono.formats import FormatError, VertexFile
+from sono.starts import names as library
 
 _OF_FILES = "./\\"
 """What no name of a knot has."""

@@ -16,11 +16,14 @@ from itertools import chain, count, islice
 from pathlib import Path
 from typing import Any
 
-from sono import checkpoints, contacts, formats, sources
+from sono import formats
 from sono._core import CurveError, Measures, PanicError
 from sono.formats import FormatError, VertexFile, is_stream
-from sono.invariants import fingerprint
-from sono.pipeline import (
+from sono.invariants.identify import fingerprint
+from sono.jobs import checkpoints, contacts, sources
+from sono.jobs.workers import Workers
+from sono.tables import Row, printable
+from sono.tightening.run import (
     TRIALS,
     KnotTypeError,
     Method,
@@ -32,8 +35,6 @@ from sono.pipeline import (
     forces,
     measure,
 )
-from sono.tables import Row, printable
-from sono.workers import Workers
 
 KIND = "tightening"
 """What checkpoints of this module call themselves."""

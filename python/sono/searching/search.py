@@ -21,12 +21,12 @@ from typing import Any, Protocol, Self, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sono import library
 from sono._core import Collapse, Measures, PanicError, Polish, Tightener
-from sono.checkpoints import packed, unpacked
-from sono.invariants import Curve, Fingerprint, TooEntangledError, fingerprint
-from sono.pipeline import HOT, SLICE, Stopped, measure, tighten
-from sono.scramble import scramble
+from sono.invariants.identify import Curve, Fingerprint, TooEntangledError, fingerprint
+from sono.jobs.checkpoints import packed, unpacked
+from sono.starts import names as library
+from sono.starts.scramble import scramble
+from sono.tightening.run import HOT, SLICE, Stopped, measure, tighten
 
 TRIAL_EDGE = 0.45
 """Edge length of the shapes that trials end in, in radii."""

@@ -7,7 +7,7 @@ is drawn from another diagram gets tight in other shapes.
 
 import numpy as np
 
-from sono.planar import Diagram, Slot, across, faces
+from sono.starts.planar import Diagram, Slot, across, faces
 
 MOST = 6
 """The most flypes that are made one after another."""

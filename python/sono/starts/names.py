@@ -18,10 +18,10 @@ import re
 from functools import cache
 from importlib import resources
 
-from sono.closures import Curve, Strokes, braid, chain, grid, mirror, shuffled, torus
-from sono.flypes import flyped
-from sono.planar import Diagram, lifted
-from sono.scramble import scramble
+from sono.starts.closures import Curve, Strokes, braid, chain, grid, mirror, shuffled, torus
+from sono.starts.flypes import flyped
+from sono.starts.planar import Diagram, lifted
+from sono.starts.scramble import scramble
 
 # Those that are drawn best in another way than as the braids of the data file.
 _DRAWN = {

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono._core import measure
-from sono.closures import Curve, divided
+from sono.starts.closures import Curve, divided
 
 Diagram: TypeAlias = list[tuple[int, int, int, int]]
 """A PD code: for each crossing its four edges, from 1, counter-clockwise from the incoming lower one."""

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.closures import Curve
+from sono.starts.closures import Curve
 
 Map: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """A map of space, which takes points (m, 3) to points (m, 3)."""

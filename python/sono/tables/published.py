@@ -13,10 +13,11 @@ import re
 from contextlib import suppress
 from functools import cache
 
-from sono import formats, library, tables
-from sono.closures import mirror
+from sono import formats, tables
 from sono.formats import FormatError
-from sono.invariants import fingerprint
+from sono.invariants.identify import fingerprint
+from sono.starts import names as library
+from sono.starts.closures import mirror
 from sono.tables import Row, Value
 
 BELOW = 0.015

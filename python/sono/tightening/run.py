@@ -23,8 +23,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
 from sono._core import Collapse, CurveError, Measures, PanicError, Polish, PolishStatus, Status, Tightener
-from sono.checkpoints import packed, unpacked
-from sono.invariants import Curve, Fingerprint, TooEntangledError, fingerprint
+from sono.invariants.identify import Curve, Fingerprint, TooEntangledError, fingerprint
+from sono.jobs.checkpoints import packed, unpacked
 from sono.patience import patiently, within
 
 Method = Literal["both", "sono", "polish"]

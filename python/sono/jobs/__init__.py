@@ -1,0 +1,4 @@
+"""What the commands have done: jobs with their files, checkpoints, locks and rows, here or on a cluster.
+
+May import everything but `cli`.
+"""

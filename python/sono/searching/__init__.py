@@ -1,0 +1,4 @@
+"""The search for the shortest tight rope of a knot: many trials, and the minima that they end in.
+
+May import `starts`, `tightening` and what those may.
+"""
