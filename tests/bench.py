@@ -8,7 +8,7 @@ import time
 
 import sono
 from sono._core import Polish, Tightener, measure
-from sono.tightening.run import Method, Progress, Stopped
+from sono.tightening import Method, Progress, Stopped
 
 GOAL = 32.7402
 """L_p of the trefoil at n = 480 up to which SONO and the polish race; the paper has 32.74005."""
@@ -35,7 +35,7 @@ def race(method: Method) -> tuple[float, float | None]:
 
 def levels() -> None:
     """Polish the trefoil to the end at each n, from the one before: Newton steps and what they cost."""
-    curve = sono.tighten(sono.start("3_1"), 120).curve
+    curve = list(sono.tighten(sono.start("3_1"), 120).curve)
     print("n\tL_p\tL_c\tsteps\tfactorisations\tseconds\tms a factorisation")
     n = 240
     while n <= 15_360:

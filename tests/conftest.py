@@ -11,10 +11,9 @@ from typing import Any, TypeAlias
 import pytest
 from click.testing import CliRunner, Result
 
-from sono import formats
+from sono import formats, starts
 from sono.cli import main
-from sono.starts import names as library
-from sono.tightening import run as pipeline
+from sono.tightening import engines
 
 Sono: TypeAlias = Callable[..., Result]
 Spawn: TypeAlias = Callable[..., subprocess.Popen[str]]
@@ -28,7 +27,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder to work in, but for two starting conformations."""
     monkeypatch.chdir(tmp_path)
     for name in ("3_1", "Hopf"):
-        formats.write(tmp_path / f"{name}.txt", library.start(name))
+        formats.write(tmp_path / f"{name}.txt", starts.start(name))
     return tmp_path
 
 
@@ -45,7 +44,7 @@ def sono(folder: Path) -> Sono:
 @pytest.fixture
 def slices(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut runs into slices so short that each stage has several."""
-    monkeypatch.setattr(pipeline, "SLICE", 1e-4)
+    monkeypatch.setattr(engines, "SLICE", 1e-4)
 
 
 @pytest.fixture

@@ -16,9 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
+from sono import starts
 from sono.formats import FormatError, text, vect
-from sono.jobs import tighten as batch
-from sono.starts import names as library
+from sono.jobs import curvefiles
+from sono.jobs.result import as_row
 
 SLOW = 5.0
 """Seconds after which a file counts as a hang."""
@@ -61,7 +62,7 @@ WORDS = (
 
 def samples() -> list[bytes]:
     """Files of all kinds that are read."""
-    trefoil, link = library.start("3_1"), library.start("Hopf")
+    trefoil, link = starts.start("3_1"), starts.start("Hopf")
     few = np.random.default_rng(1).normal(size=(7, 3)).round(3)
     closed = np.vstack([few, few[:1]])
     fortran = text.write([few], []).replace("\n", "D+00\n")
@@ -140,9 +141,9 @@ def complaint(path: str) -> str | None:
     """Read and measure a file; say what must not happen if it does."""
     begun = time.perf_counter()
     try:
-        file, measures = batch.measured(path)
+        file, measures = curvefiles.measured(path)
         file.doubts()
-        row = batch.as_row("k", path, measures)
+        row = as_row("k", path, measures)
         wrong = [key for key, value in row.items() if isinstance(value, float) and not _fit(key, value)]
         fault = f"{', '.join(wrong)} of {row}" if wrong else None
     except FormatError as error:

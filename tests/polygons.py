@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.starts import names as library
+from sono import starts
 
 Vertices = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def lattice(steps: int, seed: int) -> Vertices:
 def knotted_arc(name: str, size: float, seed: int) -> Vertices:
     """A loop 1 across, on few vertices, with a knot so large in it."""
     random = np.random.default_rng(seed)
-    knot = library.start(name)[0]
+    knot = starts.start(name)[0]
     knot = knot - knot.mean(axis=0)
     knot *= size / np.ptp(knot, axis=0).max()
     outermost = np.linalg.norm(knot, axis=1).argmax()

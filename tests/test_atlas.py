@@ -5,12 +5,11 @@ from pathlib import Path
 import pytest
 from conftest import Sono
 
-from sono import formats, measure, tables
+from sono import formats, measure, starts, tables
 from sono import tighten as sono_tighten
-from sono.invariants.identify import fingerprint
+from sono.invariants import fingerprint
 from sono.jobs.atlas import Atlas, confirmed_type
-from sono.searching import search
-from sono.starts import names as library
+from sono.searching import trials
 
 KNOTS = Path(__file__).parent.parent / "knots"
 SHIPPED = Atlas(KNOTS).rows()
@@ -18,12 +17,12 @@ SHIPPED = Atlas(KNOTS).rows()
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "GENTLE", 1)
+    monkeypatch.setattr(trials, "GENTLE", 1)
 
 
 def tight(path: Path, knot: str, n: int) -> str:
     """Write a tight rope, as a search would."""
-    shape = search.attempt(search.Source.of(library.start(knot), knot), 0)
+    shape = trials.attempt(trials.Source.of(starts.start(knot), knot), 0)
     assert shape.curve
     found = sono_tighten(shape.curve, n, method="polish")
     header = f"{knot}: tight, rope radius R_s = 1"
@@ -56,11 +55,11 @@ def test_the_finer_bound_is_what_the_file_leads_to(knot: str) -> None:
 @pytest.mark.parametrize("knot", list(SHIPPED)[::6])
 def test_files_hold_the_knots_of_their_names(knot: str) -> None:
     curve = formats.read(KNOTS / "tight" / f"{knot}.txt").components
-    assert fingerprint(curve) == fingerprint(library.start(knot))
+    assert fingerprint(curve) == fingerprint(starts.start(knot))
 
 
 def test_the_atlas_is_whole() -> None:
-    assert list(SHIPPED) == [row["knot"] for row in library.table("knots")]
+    assert list(SHIPPED) == [row["knot"] for row in starts.table("knots")]
     assert {path.stem for path in (KNOTS / "tight").iterdir()} == set(SHIPPED)
     assert sum(float(row["l_a_difference"] or 1) <= 0 for row in SHIPPED.values()) >= 248
     assert sum(float(row["l_c_difference"] or 1) <= 0 for row in SHIPPED.values()) >= 244
@@ -72,7 +71,7 @@ def test_a_row_never_gets_worse(tmp_path: Path) -> None:
     # 6_1 has two minima; the braid, variant 0, leads to the longer one.
     short, long = tmp_path / "short.txt", tmp_path / "long.txt"
     tight(long, "6_1", 288)
-    shape = search.attempt(search.Source.of(library.start("6_1"), "6_1"), 7)
+    shape = trials.attempt(trials.Source.of(starts.start("6_1"), "6_1"), 7)
     assert shape.curve
     formats.write(short, shape.curve)
     row = atlas.take("6_1", str(long))
@@ -102,7 +101,7 @@ def test_another_knot_is_not_taken(tmp_path: Path) -> None:
         with pytest.raises(ValueError, match=f"3_1.txt: is of another knot type than {name}; remove it"):
             atlas.take(name, trefoil)
     assert not (tmp_path / "tight").exists()
-    assert confirmed_type("3_1", library.start("3_1", 1), "3_1.txt") == "homfly"
+    assert confirmed_type("3_1", starts.start("3_1", 1), "3_1.txt") == "homfly"
 
 
 def test_the_command_updates_and_checks(folder: Path, sono: Sono) -> None:
@@ -122,9 +121,9 @@ def test_the_command_updates_and_checks(folder: Path, sono: Sono) -> None:
     # A file that is no longer that of its row is found out, and one of another knot too.
     file = folder / "mine/tight/3_1.txt"
     formats.write(file, [2 * component for component in formats.read(file).components])
-    formats.write(file, library.start("3_1"))
+    formats.write(file, starts.start("3_1"))
     assert "its row is not that of its file" in sono("atlas", "3_1", *more).stderr
-    formats.write(file, library.start("4_1"))
+    formats.write(file, starts.start("4_1"))
     wrong = "sono: mine/tight/3_1.txt: is of another knot type than 3_1; remove it"
     assert wrong in sono("atlas", "3_1", *more).stderr
     assert wrong in sono("atlas", "3_1", "--update", "--trials", "1", *more).stderr
@@ -137,7 +136,7 @@ def test_files_are_taken_in(folder: Path, sono: Sono) -> None:
     assert result.exit_code == 0
     assert [row["knot"] for row in tables.read("mine/atlas.tsv")] == ["3_1"]
     # One of another knot is refused even if it is too long to be taken.
-    mirrored = [component * [1, 1, -1.001] for component in library.start("3_1")]
+    mirrored = [component * [1, 1, -1.001] for component in starts.start("3_1")]
     formats.write(folder / "3_1.mirror.txt", mirrored)
     result = sono("atlas", "3_1.mirror.txt", "--folder", "mine", "--update")
     assert (result.exit_code, "3_1.mirror.txt: is of another knot type" in result.stderr) == (1, True)

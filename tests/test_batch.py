@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sono import formats
+from sono import formats, starts
 from sono._core import PanicError
 from sono.formats import FormatError
-from sono.jobs import checkpoints
+from sono.jobs import checkpoints, curvefiles, task
 from sono.jobs import tighten as batch
 from sono.jobs.tighten import Job
-from sono.starts import names as library
-from sono.tightening.run import Progress, Run, Stage, Stopped
+from sono.tightening import Progress, Run, Stopped
+from sono.tightening.plan import Stage
 
 pytestmark = pytest.mark.usefixtures("slices")
 
@@ -122,11 +122,11 @@ def test_a_lost_result_is_made_again(job: Job) -> None:
 
 @pytest.mark.slow
 def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch, "SAVE_EVERY", 0)
+    monkeypatch.setattr(task, "SAVE_EVERY", 0)
     stages = set()
 
     def look(progress: Progress) -> None:
-        stages.add(checkpoints.load(Path("knot.json"), batch.KIND)["run"]["rungs"][0][0])
+        stages.add(checkpoints.load(Path("knot.json"), task.KIND)["run"]["rungs"][0][0])
 
     list(batch.run(job, look))
     assert {"collapse", "anneal", "trial", "polish"} <= stages
@@ -164,7 +164,7 @@ def test_a_disk_that_fills_up(job: Job, monkeypatch: pytest.MonkeyPatch) -> None
 
 @pytest.mark.slow
 def test_a_disk_that_is_full_for_a_while(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch, "SAVE_EVERY", 0)
+    monkeypatch.setattr(task, "SAVE_EVERY", 0)
 
     with_room = formats.atomic_text
 
@@ -199,7 +199,7 @@ def test_files_of_a_job(job: Job) -> None:
 def test_measured_says_where(folder: Path) -> None:
     formats.write("crossing.txt", [np.array([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]])], ["8"])
     with pytest.raises(FormatError, match=r"^crossing\.txt:2: the curve crosses itself"):
-        batch.measured("crossing.txt")
+        curvefiles.measured("crossing.txt")
 
 
 def test_100_000_vertices(folder: Path) -> None:
@@ -207,7 +207,7 @@ def test_100_000_vertices(folder: Path) -> None:
     rho = 2 + 0.8 * np.cos(3 * t)
     knot = np.column_stack([rho * np.cos(2 * t), rho * np.sin(2 * t), 0.8 * np.sin(3 * t)])
     formats.write("fine.txt", [knot])
-    _, measures = batch.measured("fine.txt")
+    _, measures = curvefiles.measured("fine.txt")
     assert measures.n == 100_000
     (result,) = batch.run(Job("fine.txt", "fine", {60: "60.txt"}, QUICK), nothing)
     assert result.row
@@ -217,7 +217,7 @@ def test_100_000_vertices(folder: Path) -> None:
 @pytest.mark.parametrize("name", ["circle", "triangle"])
 def test_the_simplest_curves(folder: Path, name: str) -> None:
     triangle = [np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])]
-    formats.write("flat.txt", library.start("unknot") if name == "circle" else triangle)
+    formats.write("flat.txt", starts.start("unknot") if name == "circle" else triangle)
     (result,) = batch.run(Job("flat.txt", name, {40: "40.txt"}, QUICK), nothing)
     assert result.trouble is None
     assert result.row

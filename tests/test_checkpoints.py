@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sono import starts
+from sono.curve import packed, unpacked
 from sono.formats import FormatError
 from sono.jobs import checkpoints
-from sono.jobs.checkpoints import load, packed, save, unpacked
-from sono.starts import names as library
+from sono.jobs.checkpoints import load, save
 
-STATE = {"seconds": 0.1 + 0.2, "n": [1, 2], "curve": packed(library.start("Hopf")), "none": None}
+STATE = {"seconds": 0.1 + 0.2, "n": [1, 2], "curve": packed(starts.start("Hopf")), "none": None}
 
 
 def test_what_is_read_is_what_was_saved(tmp_path: Path) -> None:

@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 from conftest import QUICK, Sono
 
-from sono import formats, tables
-from sono.starts import names as library
+from sono import formats, starts, tables
 from sono.tables import published
 
 ATLAS = Path(__file__).parent.parent / "knots" / "atlas.tsv"
@@ -92,16 +91,16 @@ def test_columns_go_by_their_heads_too(sono: Sono) -> None:
 
 def test_the_published_table_has_every_knot() -> None:
     table = published.table()
-    assert list(table) == [row["knot"] for row in library.table("knots")]
+    assert list(table) == [row["knot"] for row in starts.table("knots")]
     assert {row["source"] for row in table.values()} == {"ACPR 2011", "KnotInfo 2026.11.2"}
     # Table 1 of Ashton, Cantarella, Piatek and Rawdon.
     assert [table[knot]["published"] for knot in ("3_1", "4_1", "8_18")] == [32.7436, 42.0887, 74.9063]
 
 
 def test_a_curve_of_another_type_than_its_name(folder: Path, sono: Sono) -> None:
-    formats.write("4_1.txt", library.start("5_2"))
-    formats.write("m3_1.txt", library.start("3_1"))  # whose mirror image is as long
-    formats.write("own.txt", library.start("5_2"))
+    formats.write("4_1.txt", starts.start("5_2"))
+    formats.write("m3_1.txt", starts.start("3_1"))  # whose mirror image is as long
+    formats.write("own.txt", starts.start("5_2"))
     columns = "knot,n,l_a,file"
     table = sono("measure", "4_1.txt", "m3_1.txt", "3_1.txt", "own.txt", "--columns", columns).stdout
     assert sono("compare", "-", "-q", input=table).stderr == ""
@@ -112,15 +111,15 @@ def test_a_curve_of_another_type_than_its_name(folder: Path, sono: Sono) -> None
 
 
 def test_a_record_that_is_none(folder: Path, sono: Sono) -> None:
-    library.start("3_1")
+    starts.start("3_1")
     result = sono("compare", "-", input="knot\tl_a\n4_1\t32.7\n9_1\t75.3\n")
     assert "sono: 4_1: is 22% shorter than published: is it of this type?" in result.stderr
     assert "9_1" not in result.stderr
 
 
 def test_a_file_called_like_a_knot_is_told(folder: Path, sono: Sono) -> None:
-    formats.write("4_1", library.start("3_1"))
-    formats.write("stick", library.start("3_1"))
+    formats.write("4_1", starts.start("3_1"))
+    formats.write("stick", starts.start("3_1"))
     line = ("tighten", "4_1", "5_2", "stick", "./4_1", "-n", "60", "--force", "--columns", "knot,l_a", *QUICK)
     result = sono(*line[:4], *line[5:])
     assert 32 < float(result.stdout.split()[3]) < 33

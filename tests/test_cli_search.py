@@ -9,12 +9,11 @@ from pathlib import Path
 import pytest
 from conftest import Sono, Spawn, vertices
 
-from sono import formats, measure, tables
-from sono.invariants.identify import fingerprint
-from sono.jobs import checkpoints
-from sono.jobs import search as searches
-from sono.searching import search
-from sono.starts import names as library
+from sono import formats, measure, starts, tables
+from sono.curve import packed, unpacked
+from sono.invariants import fingerprint
+from sono.jobs import checkpoints, hunt
+from sono.searching import minima, search, trials
 
 PROMPT = 8
 """Seconds, four times what a stop may take on a machine with nothing else to do."""
@@ -24,7 +23,7 @@ ONE = ("--trials", "1", "--minima", "1")
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "GENTLE", 1)
+    monkeypatch.setattr(trials, "GENTLE", 1)
 
 
 def rows(text: str) -> list[tables.Row]:
@@ -103,11 +102,11 @@ def test_a_checkpoint_makes_the_whole_of_two_halves(
 ) -> None:
     tried = []
 
-    def attempt(source: search.Source, variant: int, watch: search.Watch) -> search.Shape:
+    def attempt(source: trials.Source, variant: int, watch: trials.Watch) -> minima.Shape:
         tried.append(variant)
         return make(source, variant, watch)
 
-    make = search.attempt
+    make = trials.attempt
     monkeypatch.setattr(search, "attempt", attempt)
     more = ("--checkpoint", "kept", "--minima", "1")
     sono("search", "4_1", "--trials", "4", *more)
@@ -195,13 +194,13 @@ def test_a_time_limit_waits_for_nobody(
     folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     free = threading.Event()
-    make = getattr(search, what)
+    make = getattr(trials, what)
 
     def hold(*arguments: object) -> object:
         assert free.wait(100)
         return make(*arguments)
 
-    for module in (search, searches):
+    for module in (trials, search, hunt):
         if hasattr(module, what):
             monkeypatch.setattr(module, what, hold)
     start = time.monotonic()
@@ -254,7 +253,7 @@ def test_a_damaged_checkpoint_spoils_nothing(folder: Path, sono: Sono) -> None:
     line = ("search", "3_1", "4_1", *ONE, "--checkpoint", "kept", "--resume", "-o", "out/")
     sono(*line)
     path = folder / "kept/3_1.search.json"
-    state = checkpoints.load(path, searches.KIND)
+    state = checkpoints.load(path, hunt.KIND)
     text = path.read_text()
     path.write_text(text.replace('"trials": 1', '"trials": 7'))
     result = sono(*line)
@@ -263,11 +262,11 @@ def test_a_damaged_checkpoint_spoils_nothing(folder: Path, sono: Sono) -> None:
     assert [row["knot"] for row in rows(result.stdout)] == ["4_1"]
     # One vertex is wrong, and nothing else tells of it.
     minimum = state["search"]["minima"][0]
-    curve = checkpoints.unpacked(minimum["curve"])
+    curve = unpacked(minimum["curve"])
     assert curve
     curve[0][5] *= 1.2
-    minimum["curve"] = checkpoints.packed(curve)
-    checkpoints.save(path, searches.KIND, state)
+    minimum["curve"] = packed(curve)
+    checkpoints.save(path, hunt.KIND, state)
     (folder / "out/3_1.tight.txt").unlink()
     result = sono("search", "3_1", "--trials", "2", "--checkpoint", "kept", "--resume", "-o", "out/")
     assert float(rows(result.stdout)[0]["l_a"] or 0) == pytest.approx(32.743, abs=1e-2)
@@ -278,7 +277,7 @@ def test_tighten_takes_names_too(folder: Path, sono: Sono) -> None:
     result = sono("tighten", "m3_1", "-n", "60", "--trials", "1", "--set", "anneal_sweeps=5000")
     assert result.exit_code == 0
     assert [row["knot"] for row in rows(result.stdout)] == ["m3_1"]
-    assert library.start("m3_1")
+    assert starts.start("m3_1")
 
 
 def test_a_finished_file_of_another_knot_or_edge_length_is_not_kept(folder: Path, sono: Sono) -> None:
@@ -294,7 +293,7 @@ def test_a_finished_file_of_another_knot_or_edge_length_is_not_kept(folder: Path
 
 
 def test_a_knot_with_the_same_invariants_is_another_knot(folder: Path, sono: Sono) -> None:
-    assert fingerprint(library.start("8_8")) == fingerprint(library.start("10_129"))
+    assert fingerprint(starts.start("8_8")) == fingerprint(starts.start("10_129"))
     assert sono("search", "8_8", *ONE, "--dl", "0.5", "-o", "one.txt").exit_code == 0
     before = (folder / "one.txt").read_text()
     other = sono("search", "10_129", *ONE, "--dl", "0.5", "-o", "one.txt", "--resume")
@@ -368,7 +367,7 @@ def test_what_nobody_expected_stays_with_its_knot(
     def broken(*_: object) -> None:
         raise RuntimeError("lost")
 
-    monkeypatch.setattr("sono.jobs.search.finish", broken)
+    monkeypatch.setattr("sono.jobs.hunt.finish", broken)
     result = sono("search", "3_1", "Hopf", *ONE, "--dl", "0.1")
     assert result.exit_code == 1
     assert result.stderr.count("unexpected RuntimeError: lost") == 2

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from conftest import Sono
 
-from sono import formats
-from sono.starts import closures
-from sono.starts import names as library
-from sono.starts.closures import Curve
+from sono import formats, starts
+from sono.curve import Components
+from sono.starts.braids import braid
 from sono.starts.scramble import scramble
 
 
-def same(path: Path, curve: Curve) -> bool:
+def same(path: Path, curve: Components) -> bool:
     read = formats.read(path).components
     return len(read) == len(curve) and all(map(np.array_equal, read, curve))
 
@@ -23,27 +22,27 @@ def test_a_name(folder: Path, sono: Sono) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     assert result.stdout.startswith("# 4_1\n")
     (folder / "out.txt").write_text(result.stdout)
-    assert same(folder / "out.txt", library.start("4_1"))
+    assert same(folder / "out.txt", starts.start("4_1"))
 
 
 def test_a_braid_word(folder: Path, sono: Sono) -> None:
     assert sono("start", "--braid", "1, -2 1 -2", "-o", "out.txt").exit_code == 0
-    assert same(folder / "out.txt", closures.braid([1, -2, 1, -2]))
+    assert same(folder / "out.txt", braid([1, -2, 1, -2]))
 
 
 def test_scrambled(folder: Path, sono: Sono) -> None:
     assert sono("start", "3_1", "--scramble", "5", "-o", "out.txt").exit_code == 0
-    assert same(folder / "out.txt", scramble(library.start("3_1"), 5))
+    assert same(folder / "out.txt", scramble(starts.start("3_1"), 5))
 
 
 def test_the_suffix_gives_the_format(folder: Path, sono: Sono) -> None:
     assert sono("start", "Hopf", "-o", "out.vect").exit_code == 0
     assert (folder / "out.vect").read_text().startswith("VECT\n")
-    assert same(folder / "out.vect", library.start("Hopf"))
+    assert same(folder / "out.vect", starts.start("Hopf"))
 
 
 def test_list(sono: Sono) -> None:
-    assert sono("start", "--list").stdout.split() == list(library.names())
+    assert sono("start", "--list").stdout.split() == list(starts.names())
 
 
 def test_a_name_that_is_too_long(sono: Sono) -> None:
@@ -61,7 +60,7 @@ def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
     assert "out.txt exists; --force overwrites it" in result.stderr
     assert (folder / "out.txt").read_text() == "mine"
     assert sono("start", "3_1", "-o", "out.txt", "--force").exit_code == 0
-    assert same(folder / "out.txt", library.start("3_1"))
+    assert same(folder / "out.txt", starts.start("3_1"))
 
 
 @pytest.mark.parametrize(

@@ -14,13 +14,11 @@ from typing import Any
 import pytest
 from conftest import QUICK, Sono, Spawn, vertices
 
-from sono import formats, measure, tables
+from sono import formats, measure, starts, tables
 from sono._core import PanicError
 from sono.cli import options
-from sono.jobs import checkpoints
-from sono.jobs import tighten as batch
-from sono.starts import names as library
-from sono.tightening.run import Run
+from sono.jobs import checkpoints, task
+from sono.tightening import Run
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
 
@@ -332,7 +330,7 @@ class TestTimeLimit:
         for content, why in {
             "": "is no checkpoint, or an old or damaged one; remove it",
             state.replace('"trials": 1', '"trials": 2'): "is damaged; remove it",
-            state.replace(batch.KIND, "search"): "is no checkpoint of a tightening; remove it",
+            state.replace(task.KIND, "search"): "is no checkpoint of a tightening; remove it",
         }.items():
             path.write_text(content)
             result = sono(*line, "--resume")
@@ -344,10 +342,10 @@ class TestTimeLimit:
         line = ("tighten", "3_1.txt", "-n", "60", *QUICK, "--checkpoint", ".")
         sono(*line, *AT_ONCE)
         path = folder / "3_1.checkpoint.json"
-        state = checkpoints.load(path, batch.KIND)
+        state = checkpoints.load(path, task.KIND)
         wrong = {"curve": ["AAAA"], "rungs": [3], "worker": ["Polish", "{}"], "targets": None, "more": 1}
         for key, value in wrong.items():
-            checkpoints.save(path, batch.KIND, state | {"run": state["run"] | {key: value}})
+            checkpoints.save(path, task.KIND, state | {"run": state["run"] | {key: value}})
             result = sono(*line, "--resume")
             assert result.exit_code == 1
             assert result.stderr.startswith("sono: 3_1.checkpoint.json: holds no state of a run (")
@@ -402,7 +400,7 @@ def test_resume_takes_no_output_of_another_job(
     assert (again.exit_code, again.stderr) == (0, "")
     head, *rows = re.split(r"^(?=-?\d\S+ \S+ \S+\n)", output.read_text(), flags=re.MULTILINE)
     if change in ("4_1", "m3_1"):
-        formats.write("3_1.txt", library.start(change))
+        formats.write("3_1.txt", starts.start(change))
     elif change == "vertex":
         x, rest = rows[7].split(" ", 1)
         rows[7] = f"{float(x) + 1e-6} {rest}"
@@ -541,7 +539,7 @@ def test_unfinished_ropes_go_when_there_is_a_tight_one(folder: Path, sono: Sono)
         "3_1.n60.best4.txt": "mine",
         "3_1.n60.best.tsv": "mine",
     }
-    formats.write("other.txt", library.start("4_1"))
+    formats.write("other.txt", starts.start("4_1"))
     sono("tighten", "other.txt", "-n", "60", *QUICK, *AT_ONCE, "-o", "4_1.txt")
     kept["3_1.n60.best5.txt"] = (folder / "4_1.best.txt").read_text()
     for name, content in kept.items():

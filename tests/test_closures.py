@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from sono.invariants.identify import fingerprint
-from sono.starts.closures import Strokes, braid, chain, grid, shuffled, torus
-from sono.starts.names import start
+from sono.invariants import fingerprint
+from sono.starts import start
+from sono.starts.arcs import Strokes, grid, shuffled
+from sono.starts.braids import braid
+from sono.starts.torus import chain, torus
 
 UNKNOT = fingerprint(chain(1))
 TREFOIL: Strokes = [(0, 2), (1, 3), (2, 4), (0, 3), (1, 4)]

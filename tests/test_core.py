@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sono import _core
-from sono.starts import names as library
+from sono import _core, starts
 
 ENDLESS = json.dumps({"anneal_sweeps": 4_000_000_000})
 
@@ -28,7 +27,7 @@ def test_stubs_match_the_module(tmp_path: Path) -> None:
 
 
 def tightener(settings: str = ENDLESS) -> _core.Tightener:
-    return _core.Tightener(library.start("3_1"), "anneal", 60, settings)
+    return _core.Tightener(starts.start("3_1"), "anneal", 60, settings)
 
 
 def test_other_threads_run_meanwhile() -> None:
@@ -101,7 +100,7 @@ def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 
 
 def test_a_damaged_state_is_refused_or_goes_on() -> None:
-    rope = library.start("Hopf")
+    rope = starts.start("Hopf")
     engines = (_core.Collapse(rope, False, "{}"), tightener(), _core.Polish(rope, 96, False, 0))
     draw, refused = random.Random(7), 0
     for engine in engines:
@@ -146,13 +145,13 @@ def test_the_shape_must_be_right() -> None:
 
 
 def test_refine_gives_the_number_asked_for() -> None:
-    fine = _core.refine(library.start("Hopf"), 200)
+    fine = _core.refine(starts.start("Hopf"), 200)
     assert sum(map(len, fine)) == 200
     assert _core.measure(fine).components == 2
 
 
 def test_too_few_vertices_to_refine_to() -> None:
-    hopf = library.start("Hopf")
+    hopf = starts.start("Hopf")
     for make in (
         lambda: _core.refine(hopf, 4),
         lambda: _core.Polish(hopf, 4, False, 0),
@@ -168,4 +167,4 @@ def test_too_few_vertices_to_refine_to() -> None:
 
 def test_an_unknown_stage() -> None:
     with pytest.raises(ValueError, match="unknown stage 'setle'; the stages are: anneal, reanneal, settle"):
-        _core.Tightener(library.start("3_1"), "setle", 60, "{}")  # type: ignore[arg-type]
+        _core.Tightener(starts.start("3_1"), "setle", 60, "{}")  # type: ignore[arg-type]

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sono import starts
 from sono.formats import FormatError, text
 from sono.formats.doubts import closing_edge, jumps
-from sono.starts import names as library
 
 Floats = NDArray[np.float64]
 
-TREFOIL = library.start("3_1")[0]
+TREFOIL = starts.start("3_1")[0]
 
 
 def wrapped(curve: Floats, box: Floats, offset: Floats) -> tuple[Floats, NDArray[np.int64]]:
@@ -51,7 +51,7 @@ def test_every_jump_through_a_box_is_found() -> None:
 
 
 def test_jumps_in_a_link_are_found() -> None:
-    rings = library.start("Hopf")
+    rings = starts.start("Hopf")
     inside = [np.mod(ring + 0.4, [6.0, 6.0, 6.0]) for ring in rings]
     assert jumps(inside)[1]
     assert not jumps(rings)[1]
@@ -83,7 +83,7 @@ def test_polygons_and_sticks_jump_through_no_box() -> None:
     ],
 )
 def test_the_library_is_beyond_doubt(name: str, variant: int) -> None:
-    curve = library.start(name, variant)
+    curve = starts.start(name, variant)
     assert not jumps(curve)[1]
     assert not any(map(closing_edge, curve))
 

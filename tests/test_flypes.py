@@ -2,9 +2,9 @@
 
 import pytest
 
-from sono.invariants.identify import fingerprint
+from sono.invariants import fingerprint
+from sono.starts import start, table
 from sono.starts.flypes import flyped
-from sono.starts.names import start, table
 from sono.starts.planar import Diagram, faces, lifted
 
 DIAGRAMS: dict[str, Diagram] = {

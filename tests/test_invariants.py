@@ -7,22 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from sono.invariants.identify import (
-    ORDERS,
-    Floats,
-    alexander,
-    alexander_modulo,
-    crossings,
-    diagram,
-    fingerprint,
-    homfly,
-    linking_matrix,
-    signature,
-    simplify,
-)
-from sono.starts.closures import braid, chain, mirror, torus
-from sono.starts.names import start, table
+from sono.curve import Floats
+from sono.invariants import fingerprint, homfly
+from sono.invariants.crossings import crossings, diagram, linking_matrix, simplify
+from sono.invariants.identify import ORDERS
+from sono.invariants.polynomials import alexander, alexander_modulo
+from sono.invariants.signatures import signature
+from sono.starts import start, table
+from sono.starts.braids import braid
+from sono.starts.drawing import mirror
 from sono.starts.scramble import scramble
+from sono.starts.torus import chain, torus
 
 ROOTS = [cmath.exp(2j * math.pi / k) for k in (2, 3, 5)]
 

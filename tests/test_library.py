@@ -6,9 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sono.invariants.identify import Curve, Floats, alexander, diagram, fingerprint
-from sono.starts.closures import braid, chain, mirror, torus
-from sono.starts.names import names, start, table
+from sono.curve import Components, Floats
+from sono.invariants import fingerprint
+from sono.invariants.crossings import diagram
+from sono.invariants.polynomials import alexander
+from sono.starts import names, start, table
+from sono.starts.braids import braid
+from sono.starts.drawing import mirror
+from sono.starts.torus import chain, torus
 
 KNOTS = Path(__file__).parent.parent / "knots"
 FILES = {
@@ -33,7 +38,7 @@ def turning_angles(component: Floats) -> Floats:
     return degrees
 
 
-def ropelength(curve: Curve) -> float:
+def ropelength(curve: Components) -> float:
     """Length over rope radius, by brute force: the least of MinRad and half the distance of far vertices."""
     lengths = [np.linalg.norm(np.roll(component, -1, axis=0) - component, axis=1) for component in curve]
     radius = min(

@@ -12,10 +12,9 @@ from pathlib import Path
 import pytest
 from conftest import QUICK, Sono, Spawn
 
-from sono import formats
+from sono import formats, starts
 from sono.jobs import locks
 from sono.jobs.locks import NAME, Claims, Taken
-from sono.starts import names as library
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
 
@@ -167,7 +166,7 @@ LONG = "k" * 250
 def test_names_are_tried_before_anything_is_computed(
     folder: Path, sono: Sono, arguments: list[str], path: str
 ) -> None:
-    formats.write(f"{LONG}.txt", library.start("3_1"))
+    formats.write(f"{LONG}.txt", starts.start("3_1"))
     for taken in ("3_1.n60.txt", "there/3_1.n60.txt", "3_1.tight.txt"):
         if "--contacts" not in arguments:
             (folder / taken).mkdir(parents=True)

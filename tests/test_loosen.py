@@ -8,19 +8,14 @@ import numpy as np
 import pytest
 from polygons import entangled, equilateral, gaussian, knotted_arc, lattice, meander
 
-from sono import _core, tighten
+from sono import _core, starts, tighten
 from sono._core import Collapse, CurveError
-from sono.invariants.identify import (
-    ORDERS,
-    Curve,
-    Floats,
-    alexander_modulo,
-    crossings,
-    diagram,
-    fingerprint,
-    signature,
-)
-from sono.starts import names as library
+from sono.curve import Components, Floats
+from sono.invariants import fingerprint
+from sono.invariants.crossings import crossings, diagram
+from sono.invariants.identify import ORDERS
+from sono.invariants.polynomials import alexander_modulo
+from sono.invariants.signatures import signature
 
 Draw: TypeAlias = Callable[[int, int], Floats]
 ROOTS = [np.exp(2j * np.pi / k) for k in ORDERS]
@@ -57,7 +52,7 @@ def test_random_walks_get_tight(draw: Draw) -> None:
 def test_a_small_knot_in_a_long_loop_is_not_lost(name: str, exponent: int) -> None:
     tight = tighten(knotted_arc(name, 10.0**-exponent, exponent), 150, trials=2)
     assert tight.converged
-    assert fingerprint(tight.curve) == fingerprint(library.start(name))
+    assert fingerprint(tight.curve) == fingerprint(starts.start(name))
     assert tight.measures.l_p < {"3_1": 33, "m4_1": 42.5, "8_19": 62}[name]
 
 
@@ -93,14 +88,14 @@ def test_the_first_rope_on_a_polygon_has_its_type(draw: Draw) -> None:
 def test_the_first_rope_on_a_loop_has_its_small_knot(name: str, size: float) -> None:
     loop = [knotted_arc(name, size, 1)]
     if size >= 0.01:
-        assert fingerprint(Collapse(loop, True, "{}").best()) == fingerprint(library.start(name))
+        assert fingerprint(Collapse(loop, True, "{}").best()) == fingerprint(starts.start(name))
     else:
         with pytest.raises(CurveError, match="comes so close to itself"):
             Collapse(loop, True, "{}")
 
 
 def test_a_thick_curve_is_collapsed_as_it_is() -> None:
-    assert not collapsed(library.start("8_18")[0]).loosened()
+    assert not collapsed(starts.start("8_18")[0]).loosened()
 
 
 def test_links_keep_their_components_apart() -> None:
@@ -113,7 +108,7 @@ def test_links_keep_their_components_apart() -> None:
 
 
 def test_a_saved_collapse_goes_on_as_if_it_had_never_stopped() -> None:
-    def through(curve: Curve, saved: set[int]) -> Curve:
+    def through(curve: Components, saved: set[int]) -> Components:
         collapse, slices = Collapse(curve, False, "{}"), 0
         while collapse.advance(1e-3).outcome == "running":
             slices += 1

@@ -11,12 +11,14 @@ import pytest
 from polygons import entangled
 
 import sono
-from sono import tighten
+from sono import starts, tighten
 from sono._core import PanicError
+from sono.curve import Components, as_components
 from sono.invariants import identify as invariants
-from sono.starts import names as library
+from sono.tightening import KnotTypeError, Method, Progress, Run, Stopped
 from sono.tightening import run as pipeline
-from sono.tightening.run import Method, Progress, Run, Stopped, as_curve, check_settings, default_settings
+from sono.tightening.plan import Stage
+from sono.tightening.settings import check_settings, default_settings
 
 QUICK = {"anneal_sweeps": 500, "settle_sweeps": 100, "tolerance": 1e-2}
 
@@ -44,7 +46,7 @@ def test_any_kind_of_array(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def test_components_of_different_lengths() -> None:
-    curve = as_curve([np.array(HEXAGON), 9 * np.array(HEXAGON[::2])])
+    curve = as_components([np.array(HEXAGON), 9 * np.array(HEXAGON[::2])])
     assert [component.shape for component in curve] == [(6, 3), (3, 3)]
     assert sono.measure(curve).components == 2
 
@@ -54,7 +56,7 @@ def test_components_of_different_lengths() -> None:
 )
 def test_what_is_no_curve(vertices: Any) -> None:
     with pytest.raises((ValueError, TypeError)):
-        as_curve(vertices)
+        as_components(vertices)
 
 
 def test_the_callers_arrays_stay_as_they_are() -> None:
@@ -227,7 +229,7 @@ def refuse(monkeypatch: pytest.MonkeyPatch, error: Exception, when: Callable[[in
     """Let those stages fail of which `when` says so, given their number from 1, their name and n."""
     begin, begun = Run._engine, 0
 
-    def engine(self: Run, stage: pipeline.Stage, n: int) -> Any:
+    def engine(self: Run, stage: Stage, n: int) -> Any:
         nonlocal begun
         begun += 1
         if when(begun, stage, n):
@@ -294,7 +296,7 @@ def other_knots(monkeypatch: pytest.MonkeyPatch, changed: set[int]) -> None:
     """Let the ropes that come in these places seem to be of another type."""
     place = count()
 
-    def seen(curve: invariants.Curve) -> invariants.Fingerprint:
+    def seen(curve: Components) -> invariants.Fingerprint:
         found = invariants.fingerprint(curve)
         return ((7,), *found[1:]) if next(place) in changed else found
 
@@ -303,7 +305,7 @@ def other_knots(monkeypatch: pytest.MonkeyPatch, changed: set[int]) -> None:
 
 def test_a_trial_that_changes_the_type_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     other_knots(monkeypatch, {2})  # after the curve itself and the first collapse: the first anneal
-    tight = tighten(library.start("3_1"), 60, trials=3)
+    tight = tighten(starts.start("3_1"), 60, trials=3)
     assert tight.converged
     assert len(tight.shapes) == 2
     (why,) = tight.failed
@@ -313,14 +315,14 @@ def test_a_trial_that_changes_the_type_is_dropped(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("method", get_args(Method))
 def test_another_knot_is_never_delivered(monkeypatch: pytest.MonkeyPatch, method: Method) -> None:
     other_knots(monkeypatch, set(range(1, 1000)))
-    with pytest.raises(pipeline.KnotTypeError, match="came out as another knot"):
-        tighten(library.start("3_1"), 60, method=method, settings={"anneal_sweeps": 1000})
+    with pytest.raises(KnotTypeError, match="came out as another knot"):
+        tighten(starts.start("3_1"), 60, method=method, settings={"anneal_sweeps": 1000})
 
 
 def test_a_knot_lost_at_the_last_polish_is_not_delivered(monkeypatch: pytest.MonkeyPatch) -> None:
-    run = Run(library.start("3_1"), [60], {}, trials=1)
+    run = Run(starts.start("3_1"), [60], {}, trials=1)
     other_knots(monkeypatch, {4})  # the curve, collapse, anneal, trial, polish
-    with pytest.raises(pipeline.KnotTypeError, match="the polish at n = 60"):
+    with pytest.raises(KnotTypeError, match="the polish at n = 60"):
         run.tighten()
 
 
@@ -338,9 +340,9 @@ def test_a_thin_curve_is_loosened_once_for_all_trials() -> None:
 @pytest.mark.parametrize("method", ["both", "sono"])
 @pytest.mark.parametrize("n", [15, 21])
 def test_a_trefoil_on_as_few_beads_as_in_the_papers_figures(n: int, method: Method) -> None:
-    tight = tighten(library.start("3_1"), n, method=method)
+    tight = tighten(starts.start("3_1"), n, method=method)
     assert tight.converged
-    assert invariants.fingerprint(tight.curve) == invariants.fingerprint(library.start("3_1"))
+    assert invariants.fingerprint(tight.curve) == invariants.fingerprint(starts.start("3_1"))
     # Neighbours touch; edges so long leave no bound.
     assert tight.measures.l_p < 31
     assert tight.measures.dl < 2
@@ -349,17 +351,17 @@ def test_a_trefoil_on_as_few_beads_as_in_the_papers_figures(n: int, method: Meth
 
 def test_the_least_n_is_told_and_will_do() -> None:
     with pytest.raises(sono.CurveError, match="strands would fit between beads; ask for at least") as caught:
-        tighten(library.start("3_1"), 9)
+        tighten(starts.start("3_1"), 9)
     needed = caught.value.needed or 0
     assert 10 < needed < 17
-    assert tighten(library.start("3_1"), needed).converged
+    assert tighten(starts.start("3_1"), needed).converged
 
 
 @pytest.mark.parametrize("knot", ["3_1", "4_1"])
 def test_ropes_of_the_coarsest_edges_are_tight_one_after_another(knot: str) -> None:
     """What holds a rope on few beads is nothing to begin the next few with."""
     least = {"3_1": 14, "4_1": 21}[knot]
-    run = Run(library.start(knot), list(range(least, least + 6)), {}, trials=4)
+    run = Run(starts.start(knot), list(range(least, least + 6)), {}, trials=4)
     while run.targets:
         tight = run.tighten()
         assert tight.converged, run.targets[0]

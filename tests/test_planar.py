@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from sono import measure
-from sono.invariants.identify import crossings, fingerprint
-from sono.starts.names import start
+from sono.invariants import fingerprint
+from sono.invariants.crossings import crossings
+from sono.starts import start
 from sono.starts.planar import Diagram, lifted
 
 TREFOIL: Diagram = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]

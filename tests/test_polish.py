@@ -8,8 +8,9 @@ import pytest
 from conftest import QUICK, Sono
 
 import sono as library
-from sono import formats
-from sono.tightening.run import Run, Tight, as_curve
+from sono import formats, starts
+from sono.curve import as_components
+from sono.tightening import Run, Tight
 
 PAPER = Path(__file__).parent / "paper" / "tables.csv"
 
@@ -20,7 +21,7 @@ def rows(knot: str) -> list[dict[str, str]]:
 
 
 def table(knot: str, targets: list[int]) -> list[Tight]:
-    run = Run(as_curve(library.start(knot)), targets, {})
+    run = Run(as_components(starts.start(knot)), targets, {})
     tight = []
     while run.targets:
         tight.append(run.tighten())
@@ -55,7 +56,7 @@ def test_figure_eight_at_dl_0_1() -> None:
 
 
 def test_a_tight_rope_carries_its_physics() -> None:
-    tight = library.tighten(library.start("4_1"), 140, trials=2)
+    tight = library.tighten(starts.start("4_1"), 140, trials=2)
     assert tight.converged
     assert tight.residual is not None
     assert tight.residual <= 1e-8
@@ -82,14 +83,14 @@ def test_a_tight_rope_carries_its_physics() -> None:
 
 
 def test_sono_alone_has_no_physics() -> None:
-    tight = library.tighten(library.start("3_1"), 60, method="sono", settings={"anneal_sweeps": 5000})
+    tight = library.tighten(starts.start("3_1"), 60, method="sono", settings={"anneal_sweeps": 5000})
     assert (tight.residual, tight.mu, tight.excess, tight.forces) == (None, None, None, None)
     assert tight.sweeps > 0 == tight.factorisations
 
 
 def test_several_trials_find_a_better_shape() -> None:
     # From this start nearly all gentle anneals end at L_a 61.508.
-    tight = library.tighten(library.start("7_1"), 154)
+    tight = library.tighten(starts.start("7_1"), 154)
     assert len(tight.shapes) == 8
     assert tight.measures.l_a is not None
     assert tight.measures.l_a == pytest.approx(min(tight.shapes), rel=1e-6)
@@ -97,15 +98,15 @@ def test_several_trials_find_a_better_shape() -> None:
 
 
 def test_trials_that_agree_are_enough() -> None:
-    assert len(library.tighten(library.start("3_1"), 60).shapes) == 4
-    assert len(library.tighten(library.start("3_1"), 60, trials=3).shapes) == 3
+    assert len(library.tighten(starts.start("3_1"), 60).shapes) == 4
+    assert len(library.tighten(starts.start("3_1"), 60, trials=3).shapes) == 3
     with pytest.raises(ValueError, match="trials = 0 is too small"):
-        library.tighten(library.start("3_1"), 60, trials=0)
+        library.tighten(starts.start("3_1"), 60, trials=0)
 
 
 def test_an_unknown_method() -> None:
     with pytest.raises(ValueError, match="unknown method 'newton'; the methods are: both, sono, polish"):
-        library.tighten(library.start("3_1"), 60, method="newton")  # type: ignore[arg-type]
+        library.tighten(starts.start("3_1"), 60, method="newton")  # type: ignore[arg-type]
 
 
 def test_the_run_says_what_it_tried(sono: Sono) -> None:

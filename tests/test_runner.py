@@ -9,7 +9,7 @@ import pytest
 
 from sono import tables
 from sono.cli.runner import Batch
-from sono.jobs.tighten import Result
+from sono.jobs.result import Result
 
 
 @dataclass

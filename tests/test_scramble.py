@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from sono.invariants.identify import crossings, fingerprint
-from sono.starts.closures import chain
-from sono.starts.names import start
+from sono.invariants import fingerprint
+from sono.invariants.crossings import crossings
+from sono.starts import start
 from sono.starts.scramble import scramble
+from sono.starts.torus import chain
 
 UNKNOT = fingerprint(chain(1))
 

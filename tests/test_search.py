@@ -11,30 +11,30 @@ import numpy as np
 import polygons
 import pytest
 
-from sono import _core, measure
+from sono import _core, measure, starts
 from sono._core import CurveError, PanicError
-from sono.invariants import identify as invariants
-from sono.invariants.identify import Curve, Fingerprint, fingerprint
-from sono.jobs.checkpoints import packed
+from sono.curve import Components, packed
+from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.jobs.workers import Threads
-from sono.searching import search
-from sono.searching.search import Search, Shape, Source, attempt, finish, radii_of_gyration, refine, reseat
-from sono.starts import names as library
+from sono.searching import minima, search, trials
+from sono.searching.minima import Shape, radii_of_gyration
+from sono.searching.search import Search
+from sono.searching.trials import Source, attempt, finish, refine, reseat
+from sono.tightening import Stopped
 from sono.tightening import run as pipeline
-from sono.tightening.run import Stopped
 
-SHARE = search.GENTLE
+SHARE = trials.GENTLE
 """The share of gentle anneals, as it is outside of these tests."""
 
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Short anneals are enough for knots of few crossings."""
-    monkeypatch.setattr(search, "GENTLE", 1)
+    monkeypatch.setattr(trials, "GENTLE", 1)
 
 
 def source(knot: str) -> Source:
-    return Source.of(library.start(knot), knot)
+    return Source.of(starts.start(knot), knot)
 
 
 def here(function: Callable[..., Any], *args: Any, rank: int | None = None) -> Callable[[], Any]:
@@ -58,7 +58,7 @@ def run(knot: str, trials: int, found: Search | None = None, submit: Any = here)
 def test_a_trial_ends_in_a_short_rope_of_the_type() -> None:
     shape = attempt(source("4_1"), 3)
     assert shape.curve is not None
-    assert fingerprint(shape.curve) == fingerprint(library.start("4_1"))
+    assert fingerprint(shape.curve) == fingerprint(starts.start("4_1"))
     assert shape.length == measure(shape.curve).l_a
     assert 42 < shape.length < 42.5
     np.testing.assert_array_equal(shape.radii, radii_of_gyration(shape.curve))
@@ -71,7 +71,7 @@ def test_a_trial_follows_its_variant() -> None:
 
 def test_a_trial_that_changes_the_type_is_found_out() -> None:
     trefoil = source("3_1")
-    wrong = replace(trefoil, type=fingerprint(library.start("4_1")))
+    wrong = replace(trefoil, type=fingerprint(starts.start("4_1")))
     assert attempt(wrong, 0).changed
     assert attempt(wrong, 0).curve is None
     counted = Search()
@@ -83,7 +83,7 @@ def test_a_trial_that_changes_the_type_is_found_out() -> None:
 def test_a_start_that_cannot_be_tightened_is_counted() -> None:
     flat = [np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 0, 0.0]])]
     counted = Search()
-    hopeless = Source(None, flat, fingerprint(library.start("unknot")))
+    hopeless = Source(None, flat, fingerprint(starts.start("unknot")))
     for _ in counted.run(hopeless, 1, here):
         pass
     assert (counted.trials, counted.changed, counted.failed) == (1, 0, 1)
@@ -107,7 +107,7 @@ def test_a_trial_that_fails_is_a_failed_trial(monkeypatch: pytest.MonkeyPatch, s
         monkeypatch.setattr(Source, "start", failing(Source.start))
     else:
         engine = {"collapse": "Collapse", "anneal": "Tightener", "polish": "Polish"}[stage]
-        monkeypatch.setattr(search, engine, failing(getattr(_core, engine)))
+        monkeypatch.setattr(trials, engine, failing(getattr(_core, engine)))
     found = run("3_1", 3)
     assert (found.trials, found.failed, found.changed) == (3, 1, 0)
     assert found.minima[0].tight
@@ -121,7 +121,7 @@ def test_what_cannot_be_refined_or_finished_leaves_the_rest(monkeypatch: pytest.
     def refuse(*_: object) -> None:
         raise CurveError("too coarse")
 
-    monkeypatch.setattr(search, "Polish", refuse)
+    monkeypatch.setattr(trials, "Polish", refuse)
     monkeypatch.setattr(pipeline, "Polish", refuse)
     assert refine(shape) is None
     assert finish(minimum, 300) is None
@@ -134,7 +134,7 @@ def test_refined_and_finished_ropes_are_tight() -> None:
     assert minimum.tight
     assert (minimum.residual or 0) <= 1e-8
     assert minimum.length == pytest.approx(32.7429, abs=1e-3)
-    assert measure(minimum.curve).dl == pytest.approx(search.FINE_EDGE, rel=0.01)
+    assert measure(minimum.curve).dl == pytest.approx(trials.FINE_EDGE, rel=0.01)
     fine = finish(minimum, 480)
     assert fine
     assert fine.tight
@@ -180,9 +180,9 @@ def test_a_saved_search_goes_on_as_if_it_had_never_stopped() -> None:
         pass
     half = Search()
     pauses = half.run(source("3_1"), 40, here)
-    for trials in (8, 16, 24, 32):
+    for many in (8, 16, 24, 32):
         next(pauses)
-        assert half.trials == trials
+        assert half.trials == many
         again = Search.restore(json.loads(json.dumps(half.state())))
         assert run("3_1", 40, again).state() == whole.state()
 
@@ -194,7 +194,7 @@ def test_seeds_begin_elsewhere() -> None:
 
 def test_shapes_are_told_apart_by_their_radii() -> None:
     found = Search()
-    curve = library.start("3_1")
+    curve = starts.start("3_1")
     for variant, (length, radii) in enumerate([(9.0, (1, 1, 1)), (8.0, (1, 1, 1.001)), (7.0, (1, 1, 2))]):
         found._take(Shape(variant, length, np.array(radii, float), curve))
     assert [(shape.variant, shape.hits) for shape in found.shapes] == [(2, 1), (1, 2)]
@@ -203,7 +203,7 @@ def test_shapes_are_told_apart_by_their_radii() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("knot", ["3_1", "7_4", "T(2,4)"])
 def test_a_curve_is_searched_by_its_scrambles(knot: str) -> None:
-    curve = library.start(knot)
+    curve = starts.start(knot)
     unnamed = Source.of(curve)
     assert unnamed.start(0) is unnamed.curve
     start = unnamed.start(1)
@@ -249,7 +249,7 @@ def test_what_stops_a_polish_is_not_swallowed() -> None:
 
 
 def test_what_watches_can_stop_a_trial(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "SLICE", 1e-4)
+    monkeypatch.setattr(trials, "SLICE", 1e-4)
 
     def stop() -> None:
         raise RuntimeError("enough")
@@ -260,18 +260,18 @@ def test_what_watches_can_stop_a_trial(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_hot_anneal(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every third trial has one; it must keep the type and end in balance like a gentle one."""
-    monkeypatch.setattr(search, "GENTLE", 0)
+    monkeypatch.setattr(trials, "GENTLE", 0)
     anneals = []
 
     def spy(*arguments: Any) -> _core.Tightener:
         anneals.append(json.loads(arguments[3]))
         return _core.Tightener(*arguments)
 
-    monkeypatch.setattr(search, "Tightener", spy)
+    monkeypatch.setattr(trials, "Tightener", spy)
     shape = attempt(source("4_1"), 1)
-    assert anneals == [search.HOT_ANNEAL | {"seed": 1}]
+    assert anneals == [trials.HOT_ANNEAL | {"seed": 1}]
     assert shape.curve is not None
-    assert fingerprint(shape.curve) == fingerprint(library.start("4_1"))
+    assert fingerprint(shape.curve) == fingerprint(starts.start("4_1"))
     minimum = refine(shape)
     assert minimum
     assert minimum.tight
@@ -279,7 +279,7 @@ def test_a_hot_anneal(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_search_anneals_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "GENTLE", SHARE)
+    monkeypatch.setattr(trials, "GENTLE", SHARE)
     anneals: list[dict[str, float]] = []
 
     def spy(*arguments: Any) -> _core.Tightener:
@@ -288,10 +288,10 @@ def test_a_search_anneals_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
         anneals.append(settings)
         return _core.Tightener(*arguments)
 
-    monkeypatch.setattr(search, "Tightener", spy)
+    monkeypatch.setattr(trials, "Tightener", spy)
     found = run("3_1", 12)
     assert len(anneals) == 12
-    assert {anneals.count(search.HOT_ANNEAL), anneals.count(search.GENTLE_ANNEAL)} == {4, 8}
+    assert {anneals.count(trials.HOT_ANNEAL), anneals.count(trials.GENTLE_ANNEAL)} == {4, 8}
     assert (found.trials, found.failed, found.changed) == (12, 0, 0)
     assert found.minima[0].tight
     assert found.minima[0].length == pytest.approx(32.743, abs=5e-3)
@@ -302,14 +302,14 @@ def test_refined_shapes_have_one_edge_length(wrong: float) -> None:
     shape = attempt(source("3_1"), 0)
     minimum = refine(replace(shape, length=wrong * shape.length))
     assert minimum
-    assert measure(minimum.curve).dl == pytest.approx(search.FINE_EDGE, rel=search.SAME_EDGES)
+    assert measure(minimum.curve).dl == pytest.approx(trials.FINE_EDGE, rel=minima.SAME_EDGES)
 
 
 def test_edges_of_few_beads() -> None:
     for length in (6.2, 12.57, 32.74, 400):
         for dl in (0.5, 0.3, 0.2, 0.05, 0.005):
-            assert search.has_edges(round(length / dl), length, dl)
-            assert not search.has_edges(round(1.3 * length / dl) + 2, length, dl)
+            assert minima.has_edges(round(length / dl), length, dl)
+            assert not minima.has_edges(round(1.3 * length / dl) + 2, length, dl)
 
 
 class Made:
@@ -318,9 +318,10 @@ class Made:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, seconds: float = 0) -> None:
         self.seconds, self.active, self.most = seconds, 0, 0
         self.lock = threading.Lock()
-        self.curve = library.start("3_1")
+        self.curve = starts.start("3_1")
         trefoil = source("3_1").type
-        monkeypatch.setattr(search, "fingerprint", lambda _: trefoil)
+        for module in (search, trials):
+            monkeypatch.setattr(module, "fingerprint", lambda _: trefoil)
         monkeypatch.setattr(search, "attempt", self.attempt)
         monkeypatch.setattr(search, "refine", self.refine)
         monkeypatch.setattr(search, "reseat", lambda minimum, watch=None: minimum)
@@ -333,17 +334,17 @@ class Made:
         with self.lock:
             self.active -= 1
 
-    def attempt(self, source: Source, variant: int, watch: search.Watch = search.unwatched) -> Shape:
+    def attempt(self, source: Source, variant: int, watch: trials.Watch = trials.unwatched) -> Shape:
         self.work(self.seconds)
         draw = np.random.default_rng(abs(variant) + (variant < 0) * 10**7)
         which = draw.geometric(0.02)  # thousands of minima, the shorter the more often met
         radii = np.array([1, 2, 3]) * 1.02 ** float(which)
         return Shape(variant, 30 * 1.001**which * draw.uniform(1, 1.003), radii, self.curve)
 
-    def refine(self, shape: Shape, watch: search.Watch = search.unwatched) -> search.Minimum:
+    def refine(self, shape: Shape, watch: trials.Watch = trials.unwatched) -> minima.Minimum:
         self.work(10 * self.seconds)
         length, curve = round(shape.length, 1), [shape.radii[0] * component for component in self.curve]
-        return search.Minimum(shape.variant, length, True, 0, curve, [shape.radii])
+        return minima.Minimum(shape.variant, length, True, 0, curve, [shape.radii])
 
 
 def test_a_long_search_stays_small(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -353,7 +354,7 @@ def test_a_long_search_stays_small(monkeypatch: pytest.MonkeyPatch) -> None:
         assert len(found.minima) <= search.KEPT
         assert len(found.shapes) <= search.KEPT
         assert len(found.refining) <= search.REFINED * search.LAG
-        assert all(len(minimum.met) <= search.MET for minimum in found.minima)
+        assert all(len(minimum.met) <= minima.MET for minimum in found.minima)
     assert found.trials == 10_000
     assert len(json.dumps(found.state())) < 1_000_000
     assert [m.length for m in found.minima] == sorted(m.length for m in found.minima)
@@ -364,13 +365,13 @@ def test_every_trial_counts_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shapes of one minimum scatter, and the shortest so far is ever another of them."""
     made = Made(monkeypatch)
 
-    def attempt(source: Source, variant: int, watch: search.Watch = search.unwatched) -> Shape:
+    def attempt(source: Source, variant: int, watch: trials.Watch = trials.unwatched) -> Shape:
         draw = np.random.default_rng(abs(variant) + (variant < 0) * 10**7)
-        radii = np.array([1, 2, 3]) * draw.uniform(1, 1 + 2 * search.SAME_RADII)
+        radii = np.array([1, 2, 3]) * draw.uniform(1, 1 + 2 * minima.SAME_RADII)
         return Shape(variant, 30 * draw.uniform(1, 1.003), radii, made.curve)
 
-    def refine(shape: Shape, watch: search.Watch = search.unwatched) -> search.Minimum:
-        return search.Minimum(shape.variant, 30, True, 0, made.curve, [shape.radii])
+    def refine(shape: Shape, watch: trials.Watch = trials.unwatched) -> minima.Minimum:
+        return minima.Minimum(shape.variant, 30, True, 0, made.curve, [shape.radii])
 
     monkeypatch.setattr(search, "attempt", attempt)
     monkeypatch.setattr(search, "refine", refine)
@@ -385,7 +386,7 @@ def test_64_workers_are_busy_and_change_nothing(monkeypatch: pytest.MonkeyPatch)
     with Threads(64) as workers:
 
         def submit(function: Callable[..., Any], *args: Any, rank: int | None = None) -> Callable[[], Any]:
-            watch = search.unwatched
+            watch = trials.unwatched
             return workers.submit(function, *args, watch=watch, rank=-1 if rank is None else rank)
 
         start = time.monotonic()
@@ -405,16 +406,16 @@ def test_urgent_work_comes_first() -> None:
     order: list[int] = []
     begun, free = threading.Event(), threading.Event()
 
-    def hold(watch: search.Watch) -> None:
+    def hold(watch: trials.Watch) -> None:
         begun.set()
         free.wait(60)
 
     with Threads(1) as workers:
-        first = workers.submit(hold, watch=search.unwatched)
+        first = workers.submit(hold, watch=trials.unwatched)
         begun.wait(60)
         ranks = [5, 3, -1, 4, -1]
         waits = [
-            workers.submit(lambda rank, _: order.append(rank), rank, watch=search.unwatched, rank=rank)
+            workers.submit(lambda rank, _: order.append(rank), rank, watch=trials.unwatched, rank=rank)
             for rank in ranks
         ]
         free.set()
@@ -452,7 +453,7 @@ def test_a_limit_while_shapes_are_refined_keeps_the_minima() -> None:
     def submit(function: Callable[..., Any], *args: Any, rank: int | None = None) -> Callable[[], Any]:
         def call() -> Any:
             nonlocal refined
-            refined += function is search.refine
+            refined += function is trials.refine
             if refined > 1:
                 raise search.OutOfTime
             return function(*args)
@@ -484,22 +485,22 @@ def test_restored_minima_are_measured_again() -> None:
 
 def test_a_minimum_found_twice_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     curve = Made(monkeypatch).curve
-    thrice = [search.Minimum(k, 30 + 1e-3 * k, True, 0, curve, [], hits=k) for k in (2, 1, 3)]
-    other = search.Minimum(4, 30.1, True, 0, curve, [], hits=4)
-    stuck = search.Minimum(5, 29, False, None, curve, [], hits=5)
-    found = search.merged([thrice[0], stuck, other, *thrice[1:]])
+    thrice = [minima.Minimum(k, 30 + 1e-3 * k, True, 0, curve, [], hits=k) for k in (2, 1, 3)]
+    other = minima.Minimum(4, 30.1, True, 0, curve, [], hits=4)
+    stuck = minima.Minimum(5, 29, False, None, curve, [], hits=5)
+    found = minima.merged([thrice[0], stuck, other, *thrice[1:]])
     assert [(minimum.variant, minimum.hits) for minimum in found] == [(1, 6), (4, 4), (5, 5)]
 
 
 def test_a_tangle_is_told_once_it_is_collapsed(monkeypatch: pytest.MonkeyPatch) -> None:
     tangle, told = [polygons.entangled(30, 3)], []
 
-    def entangled_at_first(curve: Curve) -> Fingerprint:
+    def entangled_at_first(curve: Components) -> Fingerprint:
         told.append(curve)
         if len(told) == 1:
-            raise invariants.TooEntangledError
+            raise TooEntangledError
         return fingerprint(curve)
 
-    monkeypatch.setattr(search, "fingerprint", entangled_at_first)
+    monkeypatch.setattr(trials, "fingerprint", entangled_at_first)
     assert Source.of(tangle).type == fingerprint(tangle)
     assert told[1] is not tangle

@@ -15,13 +15,13 @@ import pytest
 from conftest import QUICK, Sono, Spawn
 
 import sono as package
-from sono import _core, formats, measure
-from sono.invariants.identify import fingerprint
+from sono import _core, formats, measure, starts
+from sono.invariants import fingerprint
 from sono.patience import patiently
-from sono.starts import names as library
-from sono.starts.closures import divided
+from sono.starts.drawing import divided
+from sono.tightening import Method, Progress, Run, Stopped, engines
 from sono.tightening import run as pipeline
-from sono.tightening.run import MOST, Progress, Run, Stopped
+from sono.tightening.settings import MOST
 
 PROMPT = 10
 """Seconds, five times what a stop may take on a machine with nothing else to do."""
@@ -75,7 +75,7 @@ def test_patience_ends() -> None:
 def test_a_stop_while_the_core_is_busy(monkeypatch: pytest.MonkeyPatch, stage: str, what: str) -> None:
     """Whichever call takes too long, the best state is there; when it has ended, the run can be saved."""
     stop, free, stuck = Stop(), threading.Event(), threading.Event()
-    run = Run(library.start("3_1"), [300], {"anneal_sweeps": 5000}, trials=2)
+    run = Run(starts.start("3_1"), [300], {"anneal_sweeps": 5000}, trials=2)
 
     def hold(call: Callable[..., Any]) -> Callable[..., Any]:
         def held(*arguments: Any) -> Any:
@@ -90,7 +90,7 @@ def test_a_stop_while_the_core_is_busy(monkeypatch: pytest.MonkeyPatch, stage: s
     if what == "begins":
         monkeypatch.setattr(Run, "_engine", hold(Run._engine))
     else:
-        monkeypatch.setattr(pipeline, "_advanced", hold(pipeline._advanced))
+        monkeypatch.setattr(pipeline, "advanced", hold(engines.advanced))
     start = time.monotonic()
     with pytest.raises(Stopped):
         run.tighten(stop)
@@ -106,7 +106,7 @@ def test_a_stop_while_the_core_is_busy(monkeypatch: pytest.MonkeyPatch, stage: s
         time.sleep(0.01)
     monkeypatch.undo()
     again = Run.restore(run.state()).tighten()
-    whole = Run(library.start("3_1"), [300], {"anneal_sweeps": 5000}, trials=2).tighten()
+    whole = Run(starts.start("3_1"), [300], {"anneal_sweeps": 5000}, trials=2).tighten()
     assert all(map(np.array_equal, again.curve, whole.curve))
 
 
@@ -116,7 +116,7 @@ def test_what_is_stopped_at_once_is_not_much_finer_than_what_was_asked_for() -> 
     best = run.best()
     assert best.measures.n <= pipeline.FINER * 60
     assert best.measures.r_s == pytest.approx(1)
-    trefoil = _core.refine(package.tighten(library.start("3_1"), 60, trials=1).curve, 3000)
+    trefoil = _core.refine(package.tighten(starts.start("3_1"), 60, trials=1).curve, 3000)
     tight = Run(trefoil, [100], {}).best()
     assert tight.measures.n == 100
     assert tight.measures.l_p < 33
@@ -129,7 +129,7 @@ def test_what_is_stopped_at_once_is_not_much_finer_than_what_was_asked_for() -> 
 
 @pytest.mark.parametrize("n", [15_360, 60_000])
 @pytest.mark.parametrize("method", ["polish", "sono"])
-def test_a_time_limit_at_many_vertices(n: int, method: pipeline.Method) -> None:
+def test_a_time_limit_at_many_vertices(n: int, method: Method) -> None:
     start = time.monotonic()
     tight = package.tighten(ring(n), n, method=method, time_limit=1)
     assert time.monotonic() < start + 1 + PROMPT
@@ -161,7 +161,7 @@ from sono import patience
 from sono.tightening import run as pipeline
 from sono.cli import run
 patience.GRACE = 100
-pipeline._advanced = lambda worker: time.sleep(100)
+pipeline.advanced = lambda worker: time.sleep(100)
 run()
 """
 
@@ -184,7 +184,7 @@ def test_a_second_signal_ends_at_once(folder: Path) -> None:
 def test_impossible_numbers_are_refused(sono: Sono) -> None:
     for n in (MOST + 1, 10**9, 10**26):
         with pytest.raises(ValueError, match=f"n = {n} is too large; 500,000 vertices are the most"):
-            package.tighten(library.start("3_1"), n)
+            package.tighten(starts.start("3_1"), n)
         result = sono("tighten", "3_1.txt", "-n", f"60,{n}", *QUICK)
         assert (result.exit_code, result.stdout) == (2, "")
         assert "500,000 vertices are the most" in result.stderr

@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sono import Tight, formats, tighten
-from sono.invariants.identify import fingerprint
-from sono.starts import names as library
+from sono import Tight, formats, starts, tighten
+from sono.invariants import fingerprint
 from sono.starts.scramble import scramble
 
 KNOTS = Path(__file__).parent.parent / "knots"
@@ -55,7 +54,7 @@ def test_the_polish_alone_keeps_the_type(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_an_entangled_unknot_unties_itself(seed: int) -> None:
-    entangled = scramble(library.start("unknot"), seed)
+    entangled = scramble(starts.start("unknot"), seed)
     tight = tighten(entangled, 60, method="sono", seed=seed, settings=QUICK)
     assert_valid(tight)
     assert tight.measures.l_p == pytest.approx(2 * np.pi, rel=0.01)
@@ -64,7 +63,7 @@ def test_an_entangled_unknot_unties_itself(seed: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["3_1", "4_1", "chain3"])
 def test_a_scrambled_knot_finds_its_way_back(name: str) -> None:
-    start = library.start(name)
+    start = starts.start(name)
     entangled = scramble(start, 1)
     tight = tighten(entangled, COARSE[name], trials=2)
     assert_valid(tight)

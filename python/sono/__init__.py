@@ -16,27 +16,27 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sono._core import CurveError as CurveError
-    from sono._core import Measures as Measures
-    from sono.starts.names import start as start
-    from sono.tightening.run import Forces as Forces
-    from sono.tightening.run import Progress as Progress
-    from sono.tightening.run import Tight as Tight
-    from sono.tightening.run import forces as forces
-    from sono.tightening.run import measure as measure
-    from sono.tightening.run import tighten as tighten
+    from sono.curve import Forces as Forces
+    from sono.curve import Measures as Measures
+    from sono.curve import forces as forces
+    from sono.curve import measure as measure
+    from sono.starts import start as start
+    from sono.tightening import Progress as Progress
+    from sono.tightening import Tight as Tight
+    from sono.tightening import tighten as tighten
 
 __version__ = "0.1.0"
 
 _HOMES = {
     "CurveError": "sono._core",
-    "Forces": "sono.tightening.run",
-    "Measures": "sono._core",
-    "Progress": "sono.tightening.run",
-    "Tight": "sono.tightening.run",
-    "forces": "sono.tightening.run",
-    "measure": "sono.tightening.run",
-    "start": "sono.starts.names",
-    "tighten": "sono.tightening.run",
+    "Forces": "sono.curve",
+    "Measures": "sono.curve",
+    "Progress": "sono.tightening",
+    "Tight": "sono.tightening",
+    "forces": "sono.curve",
+    "measure": "sono.curve",
+    "start": "sono.starts",
+    "tighten": "sono.tightening",
 }
 
 __all__ = ["CurveError", "Forces", "Measures", "Progress", "Tight", "forces", "measure", "start", "tighten"]

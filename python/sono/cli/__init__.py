@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from sono.cli import streams
-from sono.tables import printable
+from sono.printing import printable
 
 COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",

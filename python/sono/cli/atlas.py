@@ -14,8 +14,8 @@ from sono.cli.runner import Batch, Show
 
 if TYPE_CHECKING:
     from sono.jobs.atlas import Atlas
+    from sono.jobs.result import Result
     from sono.jobs.search import SearchJob
-    from sono.jobs.tighten import Result
 
 COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference", "l_c_difference", "type")
 
@@ -70,16 +70,16 @@ def command(
     a folder.
     """
     # Imported here, since numpy would make --help wait.
+    from sono import starts
     from sono.jobs.atlas import Atlas
     from sono.jobs.search import SearchJob, spent
-    from sono.starts import names as library
 
     atlas = Atlas(Path(folder))
     if "-" in sources:
         raise click.UsageError("standard input has no name; give a file NAME.txt")
     if not update and not os.path.exists(os.path.join(folder, "atlas.tsv")):
         raise click.UsageError(f"{folder}/atlas.tsv: no such file; --folder says where, --update makes one")
-    names = sources or [row["knot"] for row in library.table("knots")]
+    names = sources or [row["knot"] for row in starts.table("knots")]
     options.tell_of_shadows(names, quiet)
     with options.workers(jobs, cluster) as workers:
         work = [
@@ -127,8 +127,9 @@ class _AtlasJob:
 
     def results(self, show: Show) -> "Iterator[Result]":
         """Do it."""
-        from sono.jobs.tighten import TIGHT, Result
-        from sono.tightening.run import Stopped
+        from sono.formats.ropefile import TIGHT
+        from sono.jobs.result import Result
+        from sono.tightening import Stopped
 
         file = self.file
         if self.search:

@@ -27,10 +27,11 @@ def command(
     below 1e-6 for a polished one.
     """
     # Imported here, since numpy would make --help wait.
+    from sono.curve import forces
     from sono.formats import FormatError
-    from sono.jobs import tighten as batch
+    from sono.jobs.curvefiles import measured
+    from sono.jobs.result import as_row
     from sono.patience import patiently
-    from sono.tightening.run import forces
 
     if residual and "residual" not in columns:
         columns = [*columns, "residual"]
@@ -38,7 +39,7 @@ def command(
     with options.writer(format_, columns) as table:
         for source in sources:
             try:
-                curve, measures = batch.measured(source)
+                curve, measures = measured(source)
             except FormatError as error:
                 failed = True
                 options.complain(str(error))
@@ -51,5 +52,5 @@ def command(
             more = {}
             if "residual" in columns:
                 more["residual"] = patiently(partial(forces, curve.components)).residual
-            table.row(batch.as_row(options.knot_name(source), curve.name, measures, **more))
+            table.row(as_row(options.knot_name(source), curve.name, measures, **more))
     sys.exit(1 if failed else 0)

@@ -11,13 +11,14 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 from sono.cli import options
-from sono.tables import Row, TableWriter, printable
+from sono.printing import printable
+from sono.tables import Row, TableWriter
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
     from rich.progress import TaskID
 
-    from sono.jobs.tighten import Result
+    from sono.jobs.result import Result
 
 SIGNALS = [number for name in ("SIGINT", "SIGTERM", "SIGHUP") if (number := getattr(signal, name, None))]
 """Ctrl-C, what batch systems send, and the end of the terminal."""
@@ -120,7 +121,7 @@ class Batch:
 
     def watch(self, task: "TaskID", done: float, what: str) -> None:
         """Show how far a job is, from 0 to 1, and stop it when it is time to."""
-        from sono.tightening.run import Stopped
+        from sono.tightening import Stopped
 
         self.bar.update(task, completed=done, what=what)
         if self.stop:
@@ -153,7 +154,7 @@ class Batch:
 
 def _guarded(job: Job, show: Show) -> "Iterator[Result]":
     """Give a job's results; what nobody expected, such as a lost cluster, ends this job alone."""
-    from sono.jobs.tighten import Result
+    from sono.jobs.result import Result
 
     try:
         yield from job.results(show)

@@ -43,16 +43,15 @@ def command(
     has those that are built in.
     """
     # Imported here, since numpy would make --help wait.
-    from sono import formats
+    from sono import formats, starts
     from sono.cli import options
-    from sono.starts import closures
-    from sono.starts import names as library
+    from sono.starts.braids import braid
     from sono.starts.scramble import scramble
 
     if list_names:
         if name or word or output != "-":
             raise click.UsageError("--list stands alone")
-        click.echo("\n".join(library.names()))
+        click.echo("\n".join(starts.names()))
         return
     if (name is None) == (word is None):
         raise click.UsageError("give either a NAME or a --braid word")
@@ -64,12 +63,12 @@ def command(
     try:
         if word is not None:
             title = f"closed braid {word}"
-            curve = closures.braid(_generators(word))
+            curve = braid(_generators(word))
             curve = scramble(curve, variant) if variant else curve
         else:
             assert name is not None
             title = name
-            curve = library.start(name, variant)
+            curve = starts.start(name, variant)
         title += f", variant {variant}" if variant else ""
         if scramble_seed is not None:
             title += f", scrambled with seed {scramble_seed}"

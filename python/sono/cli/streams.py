@@ -9,7 +9,7 @@ from typing import TextIO
 
 import click
 
-from sono.tables import printable
+from sono.printing import printable
 
 
 class _ClosedOutput(io.TextIOBase):

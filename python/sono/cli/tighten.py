@@ -15,12 +15,12 @@ from sono.cli.runner import Batch
 from sono.jobs.locks import Taken
 
 if TYPE_CHECKING:
-    from sono.tightening.run import Method
+    from sono.tightening import Method
 
 
 def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int]:
     """Return numbers separated by commas in increasing order."""
-    from sono.tightening.run import MOST
+    from sono.tightening.settings import MOST
 
     try:
         numbers = sorted({int(number) for number in value.split(",")})
@@ -118,7 +118,9 @@ def command(
     Standard input has the NAME stdin, or else stdin-2 and so on.
     """
     # Imported here, since numpy would make --help wait.
-    from sono.jobs.tighten import Job, free_name
+    from sono.jobs.away import SentJob
+    from sono.jobs.curvefiles import free_name
+    from sono.jobs.tighten import Job
 
     settings = _settings(seed, pairs)
     if force and resume:
@@ -150,7 +152,7 @@ def command(
     options.tell_of_shadows(sources, quiet)
     table = options.table_beside(format_, columns, "-" in (output, contacts), quiet)
     with options.workers(jobs, cluster) as workers:
-        sent = [job.sent_to(workers) for job in work] if cluster else work
+        sent = [SentJob(job, workers) for job in work] if cluster else work
         sys.exit(Batch(table, quiet).run(sent, workers.count))
 
 
@@ -207,7 +209,7 @@ def _checkpoint(folder: str | None, name: str) -> Path | None:
 
 
 def _settings(seed: int, pairs: tuple[str, ...]) -> dict[str, Any]:
-    from sono.tightening.run import check_settings, default_settings
+    from sono.tightening.settings import check_settings, default_settings
 
     defaults = default_settings()
     settings = {}

@@ -2,3 +2,8 @@
 
 May import `curve`.
 """
+
+from sono.invariants.crossings import TooEntangledError
+from sono.invariants.identify import Fingerprint, fingerprint, homfly
+
+__all__ = ["Fingerprint", "TooEntangledError", "fingerprint", "homfly"]

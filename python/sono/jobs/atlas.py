@@ -16,14 +16,16 @@ from pathlib import Path
 
 import numpy as np
 
-from sono import formats, tables
+from sono import formats, starts, tables
+from sono.curve import Components, forces, measure
 from sono.formats import FormatError
-from sono.invariants.identify import Curve, fingerprint, homfly
-from sono.jobs.tighten import KEPT_RESIDUAL, TIGHT, measured, says_tight, title
-from sono.searching.search import FINE_EDGE, Watch, same_edges, unwatched
-from sono.starts import names as library
+from sono.formats.ropefile import TIGHT, Header, Searched
+from sono.invariants import fingerprint, homfly
+from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured
+from sono.searching.minima import same_edges
+from sono.searching.trials import FINE_EDGE, Watch, unwatched
 from sono.tables import Row, Value, published
-from sono.tightening.run import Tight, forces, measure, tighten
+from sono.tightening import Tight, tighten
 
 FINEST_EDGE = 0.03
 """Edge length at which L_c is given once more, in radii."""
@@ -38,8 +40,6 @@ COLUMNS = (
     *("knot", "n", "dl", "l_p", "l_c", "l_a", "residual", "n_fine", "l_c_fine"),
     *("published", "source", "l_a_difference", "l_c_difference", "seed", "variant", "type"),
 )
-
-_ORIGIN = re.compile(r"^# searched: variant (-?\d+), seed (\d+)", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Atlas:
                 return row
             file = self.path(knot)
             curve = measured(file)[0].components
-        origin = _ORIGIN.search(formats.load(file)[1])
+        origin = header_of(file).searched
         fine = _polished(curve, FINEST_EDGE, watch)
         # It may have left a groove of the beads that held it up.
         again = _polished(fine.curve, FINE_EDGE, watch)
@@ -88,14 +88,15 @@ class Atlas:
             confirmed_type(knot, rope, file)
         if self._is_shorter(knot, curve):
             self._make()
-            searched = [f"searched: variant {origin[1]}, seed {origin[2]}"] if origin else []
-            formats.write(self.path(knot), curve, [*title(knot, TIGHT, measure(curve)), *searched])
+            searched = Searched(origin.variant, origin.seed) if origin else None
+            header = Header.of(knot, TIGHT, measure(curve), searched=searched)
+            formats.write(self.path(knot), curve, header.lines())
         finer = {"n_fine": fine.measures.n, "l_c_fine": fine.measures.l_c}
         row = published.beside({**self.measured(knot), **finer}, published.table())
         self._write(row)
         return row
 
-    def _is_shorter(self, knot: str, curve: Curve) -> bool:
+    def _is_shorter(self, knot: str, curve: Components) -> bool:
         """Tell whether a rope is shorter than what there is. Raises `FormatError` and `ValueError`."""
         path = self.path(knot)
         if not os.path.exists(path):
@@ -111,16 +112,16 @@ class Atlas:
         except OSError as error:
             raise FormatError(f"{self.folder}: cannot be made: {error.strerror}") from error
 
-    def _fit(self, file: str, watch: Watch) -> Curve:
+    def _fit(self, file: str, watch: Watch) -> Components:
         """Return the rope of a file: tight, of radius 1, with edges of FINE_EDGE, centred."""
         curve, m = measured(file)
         components = [component / m.r_s for component in curve.components]
         fits = same_edges(m.dl / m.r_s, FINE_EDGE)
-        if not (fits and says_tight(file) and forces(components).residual <= KEPT_RESIDUAL):
+        if not (fits and header_of(file).status == TIGHT and forces(components).residual <= KEPT_RESIDUAL):
             polished = _polished(components, FINE_EDGE, watch)
             if not polished.converged:
                 raise ValueError(f"{file}: does not get tight with {polished.measures.n} vertices")
-            components = polished.curve
+            components = list(polished.curve)
         return _centred(components)
 
     def measured(self, knot: str) -> Row:
@@ -129,8 +130,8 @@ class Atlas:
         Raises `FormatError` and `ValueError`.
         """
         file, m = measured(self.path(knot))
-        origin = _ORIGIN.search(formats.load(self.path(knot))[1])
-        variant, seed = map(int, origin.groups()) if origin else (None, None)
+        found = header_of(self.path(knot)).searched
+        variant, seed = (found.variant, found.seed) if found else (None, None)
         return {
             **{"knot": knot, "n": m.n, "dl": m.dl, "l_p": m.l_p, "l_c": m.l_c, "l_a": m.l_a},
             **{"residual": forces(file.components).residual, "seed": seed, "variant": variant},
@@ -164,25 +165,25 @@ class Atlas:
             formats.save(os.fspath(self.folder / "atlas.tsv"), text.getvalue())
 
 
-def _polished(curve: Curve, edge: float, watch: Watch) -> Tight:
+def _polished(curve: Components, edge: float, watch: Watch) -> Tight:
     """Polish a rope on edges of this length."""
     n = round(measure(curve).l_p / edge)
     return tighten(curve, n, method="polish", watch=lambda _: watch())
 
 
-def _centred(curve: Curve) -> Curve:
+def _centred(curve: Components) -> Components:
     """Return a rope round the origin, with as many decimals as its file has."""
     centre = np.vstack(curve).mean(axis=0)
     return [(component - centre).round(DECIMALS) for component in curve]
 
 
-def confirmed_type(knot: str, curve: Curve, file: str) -> str:
+def confirmed_type(knot: str, curve: Components, file: str) -> str:
     """Return in which invariant a file's curve agrees with the knot of this name: "homfly" or "alexander".
 
     Without the extra sono[identify] it is the weaker one. A few pairs of knots, such as 8_16 and 10_156,
     agree in both. Raises `ValueError` if the curve is another knot.
     """
-    start = library.start(knot)
+    start = starts.start(knot)
     wrong = fingerprint(curve) != fingerprint(start)
     try:
         wrong = wrong or homfly(curve) != homfly(start)

@@ -3,18 +3,14 @@
 {"checkpoint": KIND, "version": VERSION, "crc": of the state's text, "state": {...}}
 """
 
-import base64
 import json
 import os
 import zlib
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from sono import formats
 from sono.formats import FormatError
-from sono.invariants.identify import Curve
 
 VERSION = 4
 """Of the state's content; one that was written with another is refused."""
@@ -44,18 +40,3 @@ def load(path: Path, kind: str) -> dict[str, Any]:
     if not isinstance(state, dict) or zlib.crc32(json.dumps(state).encode()) != crc:
         raise FormatError(f"{path}: is damaged; remove it")
     return state
-
-
-def packed(curve: Curve | None) -> list[str] | None:
-    """Return a curve as text, every bit kept, which takes a tenth of the time that digits would."""
-    if curve is None:
-        return None
-    return [base64.b64encode(component.astype("<f8").tobytes()).decode() for component in curve]
-
-
-def unpacked(texts: list[str] | None) -> Curve | None:
-    """Return the curve of `packed`. Raises `ValueError` for any other text."""
-    if texts is None:
-        return None
-    flat = [np.frombuffer(base64.b64decode(text, validate=True), "<f8") for text in texts]
-    return [component.reshape(-1, 3).astype(np.float64) for component in flat]

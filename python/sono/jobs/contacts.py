@@ -1,8 +1,7 @@
 """The forces in a tight rope as a table: which beads press against each other, and how hard."""
 
 from sono import formats
-from sono.invariants.identify import Curve
-from sono.tightening.run import Forces
+from sono.curve import Components, Forces
 
 HEADER = """\
 # Forces in a rope of radius 1, in units of its mean tension; beads count from 0 through all components.
@@ -12,7 +11,7 @@ kind\ti\tj\tforce
 """
 
 
-def write(target: str, curve: Curve, forces: Forces) -> None:
+def write(target: str, curve: Components, forces: Forces) -> None:
     """Write the forces in a curve as TSV, to standard output for "-". Raises `formats.FormatError`."""
     rows: list[tuple[str, int, int | str, float]] = []
     first = 0

@@ -4,9 +4,8 @@ import os
 
 import numpy as np
 
-from sono import formats
+from sono import formats, starts
 from sono.formats import FormatError, VertexFile
-from sono.starts import names as library
 
 _OF_FILES = "./\\"
 """What no name of a knot has."""
@@ -20,7 +19,7 @@ def is_name(source: str) -> bool:
 
 def shadowed(source: str) -> bool:
     """Tell whether this is a file here that is called like a knot, which it takes the place of."""
-    return os.path.isfile(source) and not set(_OF_FILES) & set(source) and library.knows(source)
+    return os.path.isfile(source) and not set(_OF_FILES) & set(source) and starts.knows(source)
 
 
 def read(source: str) -> VertexFile:
@@ -28,7 +27,7 @@ def read(source: str) -> VertexFile:
     if not is_name(source):
         return formats.read(source)
     try:
-        curve = library.start(source)
+        curve = starts.start(source)
     except ValueError as error:
         raise FormatError(f"{source}: no such file, nor a knot: {error}") from error
-    return VertexFile(source, curve, [np.arange(len(component)) + 1 for component in curve])
+    return VertexFile(source, list(curve), [np.arange(len(component)) + 1 for component in curve])

@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Any, Protocol, Self, TypeVar, cast
 
 from sono.patience import awaited
-from sono.tightening.run import Stopped
+from sono.tightening import Stopped
 
 Result = TypeVar("Result")
 

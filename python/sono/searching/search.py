@@ -3,56 +3,35 @@
 The tight shape that a rope ends in depends on how it begins, and the shortest one is found by few starts in a
 hundred. A trial collapses a start, anneals it with SONO on few beads and polishes it there, in half a second
 for 8 crossings; what decides is the variety of the starts, so each trial takes another variant of
-`library.start`. At so few beads the grooves between them blur lengths by a few tenths of a percent, so the
-most promising shapes are refined to finer edges, where minima are told apart by length and radii of gyration.
-
-Trials are pure functions of a source and the number of its variant, so they may run in threads or on other
-machines, and a search gives the same minima whatever the number of workers.
+`starts.start`. The most promising shapes are refined to finer edges, where minima are told apart. A search
+gives the same minima whatever the number of workers.
 """
 
 import json
-import math
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol, Self, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sono._core import Collapse, Measures, PanicError, Polish, Tightener
-from sono.invariants.identify import Curve, Fingerprint, TooEntangledError, fingerprint
-from sono.jobs.checkpoints import packed, unpacked
-from sono.starts import names as library
-from sono.starts.scramble import scramble
-from sono.tightening.run import HOT, SLICE, Stopped, measure, tighten
-
-TRIAL_EDGE = 0.45
-"""Edge length of the shapes that trials end in, in radii."""
-
-FINE_EDGE = 0.2
-"""Edge length at which minima are compared."""
-
-POLISHES = 3
-"""Attempts to polish a shape on edges of that length, as its own length changes meanwhile."""
-
-HOT_ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
-GENTLE_ANNEAL = {"anneal_sweeps": 5_000, "anneal_tolerance": 0.1}
-GENTLE = 2 / 3
-"""The anneals of trials, and the share of the gentle ones. A hot anneal crosses barriers and leads many
-starts to the same few shapes; a gentle one, of fewer sweeps, keeps rarer shapes that are near the start."""
-
-ANNEAL_EDGES = (0.8, 1.2)
-"""Edges of the anneal, of other lengths each time: the coarser, the higher the barriers that it crosses."""
-
-OFFSETS = 2
-"""Offsets along the rope from which a shape is refined; the shortest result counts."""
-
-MOST_BEADS = 10_000
-"""Beads of a collapsed rope up to which a trial goes on. A thin start may jam at once; the rest is hours."""
+from sono.curve import measure, packed, unpacked
+from sono.invariants import fingerprint
+from sono.searching.minima import (
+    SHORTER_SHAPE,
+    Minimum,
+    Shape,
+    alike,
+    length_of,
+    merged,
+    rank,
+)
+from sono.searching.trials import Source, attempt, refine, reseat
+from sono.tightening import Stopped
 
 ROUND = 8
+
 REFINED = 2
 """After each round of so many trials so many of its shapes are refined."""
 
@@ -71,38 +50,13 @@ RESEATED = 2
 KEPT = 24
 """Unrefined shapes that are remembered, and minima."""
 
-MET = 16
-"""Coarse shapes of a minimum that are remembered."""
-
-SAME_RADII = 0.007
-"""Relative difference of the radii of gyration up to which ropes of one edge length count as one shape."""
-
-SAME_LENGTH = 2e-4
-"""Relative difference in L_a up to which two refined ropes of the same shape count as one minimum."""
-
-SHORTER_SHAPE = 5e-3
-"""A shape shorter than a minimum by more than this share is another, even if their radii are alike."""
-
-SAME_EDGES = 0.02
-"""Relative difference of edge lengths up to which the grooves of two ropes are alike."""
-
 INTACT = 1e-6
 """Dispersion, and deviation of R_s from 1, up to which a restored minimum counts as tight."""
 
 SEED_STRIDE = 10**6
 """Variants of one seed; those of the next begin after them."""
 
-FAILURES = (ValueError, PanicError)
-"""What ends a trial, or the refining of a shape, and nothing else: a `CurveError`, a curve that no scramble
-can be made of, a bug in the core."""
-
-Radii: TypeAlias = NDArray[np.float64]
-Worker = TypeVar("Worker", Collapse, Tightener, Polish)
 Result = TypeVar("Result")
-
-Watch: TypeAlias = Callable[[], None]
-"""Called about ten times a second; whatever it raises stops the work."""
-
 
 Waiting: TypeAlias = "Callable[[], Minimum | None]"
 """Waits for a minimum."""
@@ -122,161 +76,6 @@ class Submit(Protocol):
         self, function: Callable[..., Result], /, *args: Any, rank: int | None = None
     ) -> Callable[[], Result]:
         """Begin it."""
-
-
-def unwatched() -> None:
-    """Let the work go on."""
-
-
-@dataclass(frozen=True, eq=False)
-class Source:
-    """A knot to search: its `type`, a `curve` of it, and its `name` if the library has variants of that."""
-
-    name: str | None
-    curve: Curve
-    type: Fingerprint
-
-    @classmethod
-    def of(cls, curve: Curve, name: str | None = None, watch: Watch = unwatched) -> Self:
-        """Return the source of a curve, which is what the library draws if there is a name.
-
-        A nameless curve is collapsed first, as a long and thin one cannot be scrambled. Raises `ValueError`.
-        """
-        if name and library.has_variants(name):
-            return cls(name, curve, fingerprint(curve))
-        type = None
-        with suppress(TooEntangledError):  # the collapsed rope is less so, as a rule
-            type = fingerprint(curve)
-        collapsed = _done(Collapse(curve, False, "{}"), watch).best()
-        return cls(None, collapsed, type or fingerprint(collapsed))
-
-    def start(self, variant: int, watch: Watch = unwatched) -> Curve:
-        """Return a starting conformation; variant 0 is the curve itself."""
-        if not variant:
-            return self.curve
-        return library.start(self.name, variant) if self.name else scramble(self.curve, variant, watch=watch)
-
-
-@dataclass(frozen=True, eq=False)
-class Shape:
-    """What a trial ended in: a coarse rope, its L_a and its radii of gyration (3,).
-
-    `curve` is None where the trial came to nothing, and `changed` tells that this was for the knot's type.
-    `hits` counts the trials that ended so.
-    """
-
-    variant: int
-    length: float = float("inf")
-    radii: Radii = field(default_factory=lambda: np.full(3, np.inf))
-    curve: Curve | None = None
-    changed: bool = False
-    hits: int = 1
-
-
-@dataclass(frozen=True, eq=False)
-class Minimum:
-    """A refined rope, the variant that led there, and the number of trials that did.
-
-    `tight` tells whether the polish reached its end, `residual` is the largest force left over, if that is
-    known, and `met` has the radii of gyration of the coarse shapes that were refined to it.
-    """
-
-    variant: int
-    length: float
-    tight: bool
-    residual: float | None
-    curve: Curve
-    met: list[Radii]
-    hits: int = 0
-
-
-def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
-    """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
-    try:
-        collapsed = _done(Collapse(source.start(variant, watch), False, "{}"), watch)
-        edge = _spread(*ANNEAL_EDGES, variant)
-        n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
-        if n > MOST_BEADS:
-            return Shape(variant)
-        anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
-        settings = json.dumps(anneal | {"seed": abs(variant)})
-        annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
-        n = round(annealed.status().best.l_p / TRIAL_EDGE)
-        polished = _done(Polish(annealed.best(), n, True, abs(variant)), watch)
-    except FAILURES:
-        return Shape(variant)
-    curve = polished.best()
-    if fingerprint(curve) != source.type:
-        return Shape(variant, changed=True)
-    return Shape(variant, _length(polished.status().best), radii_of_gyration(curve), curve)
-
-
-def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
-    """Polish a shape to the end on edges of `FINE_EDGE`. Returns None for one that cannot be refined."""
-    curve, length = shape.curve, shape.length
-    for _ in range(POLISHES):
-        n = round(length / FINE_EDGE)
-        polish = curve and _polished(curve, n, watch)
-        if not polish:
-            return None
-        curve, length = polish.best(), _length(polish.status().best)
-        if has_edges(n, length, FINE_EDGE):
-            return _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
-    return None
-
-
-def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None:
-    """Polish a minimum on n vertices, doubling the vertices on the way there; None if that fails."""
-    try:
-        tight = tighten(minimum.curve, n, method="polish", watch=lambda _: watch())
-    except FAILURES:
-        return None
-    assert tight.residual is not None
-    return replace(
-        minimum,
-        length=_length(tight.measures),
-        tight=tight.converged,
-        residual=tight.residual,
-        curve=tight.curve,
-    )
-
-
-def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
-    """Polish a minimum on twice the vertices and then on its own number again; the shorter one counts.
-
-    Beads lie in grooves between those that they touch; among more beads these are shallow, and a rope may
-    leave one that held it up, by a thousandth of its length at most.
-    """
-    n = sum(map(len, minimum.curve))
-    try:
-        fine = _done(Polish(minimum.curve, 2 * n, False, 0), watch)
-    except FAILURES:
-        return minimum
-    polish = _polished(fine.best(), n, watch)
-    return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
-
-
-def rank(minimum: Minimum) -> tuple[bool, float]:
-    """Order tight ropes before others, then the shorter before the longer."""
-    return not minimum.tight, minimum.length
-
-
-def same_edges(one: float, other: float) -> bool:
-    """Tell whether edges are so equally long that ropes are compared by their L_a alone."""
-    return abs(one - other) <= SAME_EDGES * other
-
-
-def has_edges(n: int, length: float, dl: float) -> bool:
-    """Tell whether a rope of n vertices and this length has edges of dl, as far as n is a whole number."""
-    return abs(n * dl - length) <= max(SAME_EDGES * length, dl)
-
-
-def radii_of_gyration(curve: Curve) -> Radii:
-    """Return the three principal radii of gyration (3,) of all vertices, in increasing order."""
-    arms = np.vstack(curve)
-    arms = arms - arms.mean(axis=0)
-    radii: Radii = np.sqrt(np.linalg.eigvalsh(arms.T @ arms / len(arms)).clip(0))
-    return radii
 
 
 @dataclass
@@ -374,7 +173,7 @@ class Search:
         """
         due = self.trials + ROUND * min(max(self.trials // (2 * ROUND), 1), LAG)
         under_way = [shape.radii for _, shape in self.refining]
-        fresh = [s for s in self.shapes if not any(_alike(s.radii, radii) for radii in under_way)]
+        fresh = [s for s in self.shapes if not any(alike(s.radii, radii) for radii in under_way)]
         for shape in fresh[:most]:
             self.refining.append((due, shape))
             waiting.append(submit(refine, shape))
@@ -388,7 +187,7 @@ class Search:
             return
         for i, minimum in enumerate(self.minima):
             another = shape.length < (1 - SHORTER_SHAPE) * minimum.length
-            if not another and any(_alike(shape.radii, radii) for radii in minimum.met):
+            if not another and any(alike(shape.radii, radii) for radii in minimum.met):
                 self.minima[i] = replace(minimum, hits=minimum.hits + 1)
                 return
         if len(self.minima) == self.kept:
@@ -396,7 +195,7 @@ class Search:
             if shape.length > (1 + SHORTER_SHAPE) * longest:
                 return
         for i, other in enumerate(self.shapes):
-            if _alike(shape.radii, other.radii):
+            if alike(shape.radii, other.radii):
                 shorter = min(shape, other, key=lambda shape: shape.length)
                 # It goes by the first one's radii while it is refined; those of others may be further off.
                 self.shapes[i] = replace(shorter, radii=other.radii, hits=other.hits + 1)
@@ -412,7 +211,7 @@ class Search:
             waiting.popleft()
             _, shape = self.refining.pop(0)
             # Other trials may have met the shape while it was refined.
-            same = [other for other in self.shapes if _alike(other.radii, shape.radii)]
+            same = [other for other in self.shapes if alike(other.radii, shape.radii)]
             self.shapes = [other for other in self.shapes if other not in same]
             if found := self.confirmed(found, source):
                 hits = sum(shape.hits for shape in same or [shape])
@@ -422,68 +221,6 @@ class Search:
         """Keep the best of these and another."""
         # A new list, as other threads look at the first.
         self.minima = merged([*minima, found])[: self.kept]
-
-
-def merged(minima: Iterable[Minimum]) -> list[Minimum]:
-    """Return minima with those made one that are the same, the shortest first."""
-    apart: list[Minimum] = []
-    for found in minima:
-        radii = radii_of_gyration(found.curve)
-        for i, known in enumerate(apart):
-            near = abs(known.length - found.length) < SAME_LENGTH * found.length
-            if near and _alike(radii_of_gyration(known.curve), radii):
-                shorter, met = min(known, found, key=rank), (known.met + found.met)[-MET:]
-                apart[i] = replace(shorter, met=met, hits=known.hits + found.hits)
-                break
-        else:
-            apart.append(found)
-    return sorted(apart, key=rank)
-
-
-def _done(worker: Worker, watch: Watch) -> Worker:
-    """Let an engine run to its end."""
-    while worker.advance(SLICE).outcome == "running":
-        watch()
-    return worker
-
-
-def _spread(least: float, most: float, number: int, step: float = (math.sqrt(5) - 1) / 2) -> float:
-    """Spread numbers evenly over a range by multiples of an irrational step, by default the golden ratio."""
-    return least + (most - least) * ((0.5 + number * step) % 1)
-
-
-def _polished(curve: Curve, n: int, watch: Watch) -> Polish | None:
-    """Polish a rope on n vertices from a few offsets along it, and return the shortest, if there is any."""
-    found = []
-    for offset in range(OFFSETS):
-        with suppress(*FAILURES):
-            found.append(_done(Polish(curve, n, False, offset), watch))
-    return min(found, key=lambda polish: (not _is_tight(polish), _length(polish.status().best)), default=None)
-
-
-def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
-    """Return the minimum with what the polish made of its rope."""
-    status = polish.status()
-    return replace(
-        minimum,
-        length=_length(status.best),
-        tight=_is_tight(polish),
-        residual=status.residual,
-        curve=polish.best(),
-    )
-
-
-def _is_tight(polish: Polish) -> bool:
-    return polish.status().outcome == "tight"
-
-
-def _length(measures: Measures) -> float:
-    return measures.l_a or measures.l_p
-
-
-def _alike(one: Radii, other: Radii) -> bool:
-    # A flat curve has a radius of 0.
-    return bool((abs(one - other) <= SAME_RADII * np.maximum(other, other.max() / 10)).all())
 
 
 def _plain(value: Any) -> Any:
@@ -499,5 +236,5 @@ def _minimum(state: dict[str, Any]) -> Minimum:
     curve = unpacked(state["curve"]) or []
     measures = measure(curve)
     intact = max(abs(measures.r_s - 1), measures.dispersion) <= INTACT
-    own = {"curve": curve, "length": _length(measures), "tight": bool(state["tight"]) and intact}
+    own = {"curve": curve, "length": length_of(measures), "tight": bool(state["tight"]) and intact}
     return Minimum(**state | own | {"met": [np.array(radii, float) for radii in state["met"]]})

@@ -1,4 +1,8 @@
 """Every conformation that has a name: knots of the tables, torus types, chains, braids, and their variants.
 
-May import `curve` and `invariants`.
+May import `curve`.
 """
+
+from sono.starts.names import has_variants, knows, names, start, table
+
+__all__ = ["has_variants", "knows", "names", "start", "table"]

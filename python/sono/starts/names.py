@@ -18,10 +18,14 @@ import re
 from functools import cache
 from importlib import resources
 
-from sono.starts.closures import Curve, Strokes, braid, chain, grid, mirror, shuffled, torus
+from sono.curve import Components
+from sono.starts.arcs import Strokes, grid, shuffled
+from sono.starts.braids import braid
+from sono.starts.drawing import mirror
 from sono.starts.flypes import flyped
 from sono.starts.planar import Diagram, lifted
 from sono.starts.scramble import scramble
+from sono.starts.torus import chain, torus
 
 # Those that are drawn best in another way than as the braids of the data file.
 _DRAWN = {
@@ -78,7 +82,7 @@ def knows(name: str) -> bool:
     return plain.casefold() in map(str.casefold, names()) or any(p.fullmatch(plain) for p in patterns)
 
 
-def start(name: str, variant: int = 0) -> Curve:
+def start(name: str, variant: int = 0) -> Components:
     """Return a starting conformation of the knot called `name`, in units of about one rope radius.
 
     `name` is one of `names()`, such a name with an m before it for the mirror image, a knot to 13 crossings
@@ -106,7 +110,7 @@ def start(name: str, variant: int = 0) -> Curve:
     return scramble(curve, variant) if variant else curve
 
 
-def _drawn(name: str) -> Curve:
+def _drawn(name: str) -> Components:
     """Return the curve of a torus type, a chain or a braid word."""
     if match := _TORUS.fullmatch(name):
         return torus(int(match[1]), int(match[2]))

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono._core import measure
-from sono.starts.closures import Curve, divided
+from sono.curve import Components
+from sono.starts.drawing import divided
 
 Diagram: TypeAlias = list[tuple[int, int, int, int]]
 """A PD code: for each crossing its four edges, from 1, counter-clockwise from the incoming lower one."""
@@ -36,7 +37,7 @@ PULL = 0.3
 """The power of its length by which a line's weight grows in a round."""
 
 
-def lifted(diagram: Diagram, seed: int) -> Curve:
+def lifted(diagram: Diagram, seed: int) -> Components:
     """Return the knot of a planar diagram without nugatory crossings.
 
     The seed chooses the outer face and draws the first weights. The shortest line is 1 long, strands cross 2

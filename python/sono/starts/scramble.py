@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.starts.closures import Curve
+from sono.curve import Components
 
 Map: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """A map of space, which takes points (m, 3) to points (m, 3)."""
@@ -16,7 +16,9 @@ MOST = 5_000
 """Vertices of a curve that is scrambled, whose distances are all compared: 1 GB."""
 
 
-def scramble(curve: Curve, seed: int, swirls: int = 40, watch: Callable[[], None] = lambda: None) -> Curve:
+def scramble(
+    curve: Components, seed: int, swirls: int = 40, watch: Callable[[], None] = lambda: None
+) -> Components:
     """Return `curve` entangled by random swirls of space, in the same unit and with more vertices.
 
     A swirl turns every sphere about a centre by an angle that fades with its radius; let the angle grow from
@@ -39,7 +41,7 @@ def scramble(curve: Curve, seed: int, swirls: int = 40, watch: Callable[[], None
     return curve
 
 
-def _rope(curve: Curve) -> tuple[Curve, float]:
+def _rope(curve: Components) -> tuple[Components, float]:
     """Return `curve` finely sampled, and the radius of a rope in it that leaves room to move."""
     length = _length(curve)
     for slenderness in (100, 200, 400):
@@ -80,7 +82,7 @@ def _image(component: NDArray[np.float64], move: Map, longest: float) -> NDArray
         component = np.insert(component, cut + 1, middle, axis=0)
 
 
-def _holds_rope(curve: Curve, radius: float) -> bool:
+def _holds_rope(curve: Components, radius: float) -> bool:
     """Tell whether all vertices are 2 radii apart, or else 2/pi of the way between them along the curve.
 
     A bend of the radius of the rope meets this up to its half circle, the ends of which are 2 radii apart.
@@ -107,5 +109,5 @@ def _edges(component: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.roll(component, -1, axis=0) - component
 
 
-def _length(curve: Curve) -> float:
+def _length(curve: Components) -> float:
     return float(sum(np.linalg.norm(_edges(component), axis=1).sum() for component in curve))

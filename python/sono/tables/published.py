@@ -13,11 +13,10 @@ import re
 from contextlib import suppress
 from functools import cache
 
-from sono import formats, tables
+from sono import formats, starts, tables
 from sono.formats import FormatError
-from sono.invariants.identify import fingerprint
-from sono.starts import names as library
-from sono.starts.closures import mirror
+from sono.invariants import fingerprint
+from sono.starts.drawing import mirror
 from sono.tables import Row, Value
 
 BELOW = 0.015
@@ -38,7 +37,7 @@ def table() -> dict[str, Row]:
     """Return the shortest published ropelengths of prime knots: rows with knot, published and source."""
     return {
         row["knot"]: {"knot": row["knot"], "published": float(row["ropelength"]), "source": row["source"]}
-        for row in library.table("published")
+        for row in starts.table("published")
     }
 
 
@@ -92,7 +91,7 @@ def doubt(row: Row) -> str | None:
     name, file = _type(row["knot"]), row.get("file")
     if isinstance(file, str) and os.path.isfile(file):
         with suppress(ValueError):  # a name of no known knot, or a file of no curve
-            start = library.start(name)
+            start = starts.start(name)
             if fingerprint(formats.read(file).components) in map(fingerprint, (start, mirror(start))):
                 return None
             return f"{row['knot']}: the curve in {file} is of another type than {name}"

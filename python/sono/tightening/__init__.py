@@ -1,4 +1,11 @@
-"""From any closed curve to a tight one: the plan of a run, its trials, and the loop that runs it.
+"""From any closed curve to a tight one: the plan of a run, and the loop that runs it.
 
 May import `curve`, `invariants` and `patience`.
 """
+
+from sono.tightening.once import tighten
+from sono.tightening.results import KnotTypeError, Progress, Stopped, Tight
+from sono.tightening.run import Run
+from sono.tightening.settings import Method
+
+__all__ = ["KnotTypeError", "Method", "Progress", "Run", "Stopped", "Tight", "tighten"]

@@ -1,0 +1,107 @@
+"""Jobs whose computing is done elsewhere, perhaps on other machines."""
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from sono import formats
+from sono.formats import FormatError
+from sono.jobs import sources
+from sono.jobs.curvefiles import free_name
+from sono.jobs.kept import kept_row
+from sono.jobs.result import Result
+from sono.jobs.tighten import Job, run
+from sono.jobs.workers import Workers
+from sono.tightening import Stopped
+
+
+@dataclass(frozen=True)
+class SentJob:
+    """A job whose computing is done by `workers`, perhaps on other machines; its files stay here."""
+
+    job: Job
+    workers: Workers
+
+    @property
+    def name(self) -> str:
+        """The knot's name in tables."""
+        return self.job.name
+
+    def results(self, show: Callable[[float, str], None]) -> "Iterator[Result]":
+        """Do the job, giving its rows when all of it has come back. `show` may raise `Stopped`."""
+        job = self.job
+        try:
+            content = formats.load(job.source) if not sources.is_name(job.source) else None
+            file = formats.parse(*content) if content else sources.read(job.source)
+            kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
+            for n in kept:
+                yield kept_row(job, file, n)
+            outputs = {n: output for n, output in job.outputs.items() if n not in kept}
+            if not outputs:
+                return
+            sent = replace(job, outputs=outputs, resume=False)
+            free = {path: free_name(path) for path in outputs.values()}
+            waiting = self.workers.submit(_away, sent, content, free, watch=lambda: show(0, "on the cluster"))
+            results, texts = waiting()
+        except FormatError as error:
+            yield Result(None, str(error))
+            return
+        except Stopped as why:
+            yield Result(None, f"{job.name}: {why}; what the cluster had done of it is lost")
+            return
+        unwritten = set()
+        for path, text in texts.items():
+            try:
+                formats.save(path, text)
+            except FormatError as error:
+                unwritten.add(path)
+                yield Result(None, str(error))
+        for result in results:
+            lost = result.row and result.row["file"] in unwritten
+            yield replace(result, row={**result.row, "file": None}) if result.row and lost else result
+
+
+def _away(
+    job: Job, content: tuple[str, str] | None, free: dict[str, str]
+) -> "tuple[list[Result], dict[str, str]]":
+    """Do a job far from its files: give its results, and what is to be written to them.
+
+    `content` is the name and the text of its source, if that is a file; `free` says for each output where an
+    unfinished rope is to go.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        here: dict[str, str] = {}
+
+        def moved(path: str) -> str:
+            suffix = "" if path == "-" else Path(path).suffix
+            temporary = os.path.join(folder, f"{len(here)}{suffix}")
+            here[temporary] = path
+            here[free_name(temporary)] = free.get(path, path)
+            return temporary
+
+        source = moved(content[0]) if content else job.source
+        if content:
+            formats.save(source, content[1])
+        outputs = {n: moved(path) for n, path in job.outputs.items()}
+        between = {n: moved(path) for n, path in job.forces.items()}
+        done = [
+            _named(result, here)
+            for result in run(replace(job, source=source, outputs=outputs, forces=between), lambda _: None)
+        ]
+        written = [path for path in here if path != source and os.path.exists(path)]
+        return done, {here[path]: formats.load(path)[1] for path in written}
+
+
+def _named(result: "Result", names: dict[str, str]) -> "Result":
+    """Put the files' own names into a result."""
+
+    def named(text: Any) -> Any:
+        for path, name in names.items():
+            text = text.replace(path, name) if isinstance(text, str) else text
+        return text
+
+    row = result.row and {key: named(value) for key, value in result.row.items()}
+    return Result(row, named(result.trouble), named(result.note))

@@ -1,0 +1,71 @@
+"""What is asked for of one curve, and the rows that answer it."""
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sono.curve import Measures
+from sono.formats import VertexFile, is_stream
+from sono.formats.ropefile import STUCK
+from sono.jobs.curvefiles import digest
+from sono.jobs.result import Result, as_row
+from sono.tables import Row
+from sono.tightening import Method
+from sono.tightening.settings import TRIALS, default_settings
+
+
+@dataclass(frozen=True)
+class Order:
+    """Tighten the curve in `source` ("-" is standard input) at each n of `outputs`.
+
+    `name` is the curve's name in tables. `outputs` says where the vertices for each n go, and `forces` where
+    those between them, if they are wanted; "-" is standard output. `time_limit` is in seconds. `checkpoint`
+    is the file that keeps the state of the run. With `resume` a run goes on from its checkpoint, and outputs
+    that are there are not computed again.
+    """
+
+    source: str
+    name: str
+    outputs: dict[int, str]
+    settings: dict[str, Any]
+    method: Method = "both"
+    trials: int = TRIALS
+    forces: dict[int, str] = field(default_factory=dict)
+    time_limit: float | None = None
+    checkpoint: Path | None = None
+    resume: bool = False
+
+    def files(self) -> list[str]:
+        """Return the files that the job writes."""
+        paths = [*self.outputs.values(), *self.forces.values()]
+        outputs = [path for path in paths if not is_stream(path)]
+        return [*outputs, os.fspath(self.checkpoint)] if self.checkpoint else outputs
+
+
+def rope_row(order: Order, output: str | None, measures: Measures, status: str, **more: Any) -> Row:
+    """Make the row of a rope."""
+    overlap = max(0.0, 2 - 2 * measures.sr)
+    return as_row(order.name, output, measures, overlap=overlap, status=status, **more)
+
+
+def judged(order: Order, row: Row, note: str | None = None) -> Result:
+    """Make the result of a row whose vertices are in their file."""
+    if row["status"] != STUCK:
+        return Result(row, note=note)
+    why = f"did not settle to {tolerance(order):g}"
+    if order.method != "sono":
+        why = "did not get tight"
+        if row.get("mu") is not None:
+            why += f": the polish ended at mu = {row['mu']:.1e} with the residual {row['residual']:.1e}"
+    return Result(row, f"{order.name}: n = {row['n']} {why}; {row['file']} has its best", note)
+
+
+def tolerance(order: Order) -> float:
+    """Return the dispersion and overlap that SONO is to reach."""
+    return float((default_settings() | order.settings)["tolerance"])
+
+
+def made_from(order: Order, file: VertexFile) -> str:
+    """Tell what a rope is made from: its curve, method and settings, as a digest."""
+    return digest(file, order.method, order.trials, order.settings)

@@ -1,0 +1,195 @@
+"""What the workers of a search do: make a trial, refine a shape, finish a minimum, seat its beads anew.
+
+All are pure functions of a source and the number of its variant, so they may run in threads or on other
+machines.
+"""
+
+import json
+import math
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Self, TypeAlias, TypeVar
+
+from sono import starts
+from sono._core import Collapse, PanicError, Polish, Tightener
+from sono.curve import Components
+from sono.invariants import Fingerprint, TooEntangledError, fingerprint
+from sono.searching.minima import Minimum, Shape, has_edges, length_of, radii_of_gyration, rank
+from sono.starts.scramble import scramble
+from sono.tightening import tighten
+from sono.tightening.engines import SLICE, measures_of
+from sono.tightening.plan import HOT
+
+TRIAL_EDGE = 0.45
+"""Edge length of the shapes that trials end in, in radii."""
+
+FINE_EDGE = 0.2
+"""Edge length at which minima are compared."""
+
+POLISHES = 3
+"""Attempts to polish a shape on edges of that length, as its own length changes meanwhile."""
+
+HOT_ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
+
+GENTLE_ANNEAL = {"anneal_sweeps": 5_000, "anneal_tolerance": 0.1}
+
+GENTLE = 2 / 3
+"""The anneals of trials, and the share of the gentle ones. A hot anneal crosses barriers and leads many
+starts to the same few shapes; a gentle one, of fewer sweeps, keeps rarer shapes that are near the start."""
+
+ANNEAL_EDGES = (0.8, 1.2)
+"""Edges of the anneal, of other lengths each time: the coarser, the higher the barriers that it crosses."""
+
+OFFSETS = 2
+"""Offsets along the rope from which a shape is refined; the shortest result counts."""
+
+MOST_BEADS = 10_000
+"""Beads of a collapsed rope up to which a trial goes on. A thin start may jam at once; the rest is hours."""
+
+FAILURES = (ValueError, PanicError)
+"""What ends a trial, or the refining of a shape, and nothing else: a `CurveError`, a curve that no scramble
+can be made of, a bug in the core."""
+
+Worker = TypeVar("Worker", Collapse, Tightener, Polish)
+
+Watch: TypeAlias = Callable[[], None]
+"""Called about ten times a second; whatever it raises stops the work."""
+
+
+def unwatched() -> None:
+    """Let the work go on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A knot to search: its `type`, a `curve` of it, and its `name` if the library has variants of that."""
+
+    name: str | None
+    curve: Components
+    type: Fingerprint
+
+    @classmethod
+    def of(cls, curve: Components, name: str | None = None, watch: Watch = unwatched) -> Self:
+        """Return the source of a curve, which is what the library draws if there is a name.
+
+        A nameless curve is collapsed first, as a long and thin one cannot be scrambled. Raises `ValueError`.
+        """
+        if name and starts.has_variants(name):
+            return cls(name, curve, fingerprint(curve))
+        type = None
+        with suppress(TooEntangledError):  # the collapsed rope is less so, as a rule
+            type = fingerprint(curve)
+        collapsed = _done(Collapse(curve, False, "{}"), watch).best()
+        return cls(None, collapsed, type or fingerprint(collapsed))
+
+    def start(self, variant: int, watch: Watch = unwatched) -> Components:
+        """Return a starting conformation; variant 0 is the curve itself."""
+        if not variant:
+            return self.curve
+        return starts.start(self.name, variant) if self.name else scramble(self.curve, variant, watch=watch)
+
+
+def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
+    """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
+    try:
+        collapsed = _done(Collapse(source.start(variant, watch), False, "{}"), watch)
+        edge = _spread(*ANNEAL_EDGES, variant)
+        n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
+        if n > MOST_BEADS:
+            return Shape(variant)
+        anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
+        settings = json.dumps(anneal | {"seed": abs(variant)})
+        annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
+        n = round(annealed.status().best.l_p / TRIAL_EDGE)
+        polished = _done(Polish(annealed.best(), n, True, abs(variant)), watch)
+    except FAILURES:
+        return Shape(variant)
+    curve = polished.best()
+    if fingerprint(curve) != source.type:
+        return Shape(variant, changed=True)
+    return Shape(variant, length_of(measures_of(polished)), radii_of_gyration(curve), curve)
+
+
+def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
+    """Polish a shape to the end on edges of `FINE_EDGE`. Returns None for one that cannot be refined."""
+    curve, length = shape.curve, shape.length
+    for _ in range(POLISHES):
+        n = round(length / FINE_EDGE)
+        polish = curve and _polished(curve, n, watch)
+        if not polish:
+            return None
+        curve, length = polish.best(), length_of(measures_of(polish))
+        if has_edges(n, length, FINE_EDGE):
+            return _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
+    return None
+
+
+def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None:
+    """Polish a minimum on n vertices, doubling the vertices on the way there; None if that fails."""
+    try:
+        tight = tighten(minimum.curve, n, method="polish", watch=lambda _: watch())
+    except FAILURES:
+        return None
+    assert tight.residual is not None
+    return replace(
+        minimum,
+        length=length_of(tight.measures),
+        tight=tight.converged,
+        residual=tight.residual,
+        curve=tight.curve,
+    )
+
+
+def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
+    """Polish a minimum on twice the vertices and then on its own number again; the shorter one counts.
+
+    Beads lie in grooves between those that they touch; among more beads these are shallow, and a rope may
+    leave one that held it up, by a thousandth of its length at most.
+    """
+    n = sum(map(len, minimum.curve))
+    try:
+        fine = _done(Polish(minimum.curve, 2 * n, False, 0), watch)
+    except FAILURES:
+        return minimum
+    polish = _polished(fine.best(), n, watch)
+    return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
+
+
+def _done(worker: Worker, watch: Watch) -> Worker:
+    """Let an engine run to its end."""
+    while worker.advance(SLICE).outcome == "running":
+        watch()
+    return worker
+
+
+def _spread(least: float, most: float, number: int, step: float = (math.sqrt(5) - 1) / 2) -> float:
+    """Spread numbers evenly over a range by multiples of an irrational step, by default the golden ratio."""
+    return least + (most - least) * ((0.5 + number * step) % 1)
+
+
+def _polished(curve: Components, n: int, watch: Watch) -> Polish | None:
+    """Polish a rope on n vertices from a few offsets along it, and return the shortest, if there is any."""
+    found = []
+    for offset in range(OFFSETS):
+        with suppress(*FAILURES):
+            found.append(_done(Polish(curve, n, False, offset), watch))
+    return min(
+        found, key=lambda polish: (not _is_tight(polish), length_of(measures_of(polish))), default=None
+    )
+
+
+def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
+    """Return the minimum with what the polish made of its rope."""
+    status = polish.status()
+    return replace(
+        minimum,
+        length=length_of(measures_of(polish)),
+        tight=_is_tight(polish),
+        residual=status.residual,
+        curve=polish.best(),
+    )
+
+
+def _is_tight(polish: Polish) -> bool:
+    return polish.status().outcome == "tight"

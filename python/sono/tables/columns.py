@@ -1,0 +1,88 @@
+"""The columns that a table may have, and the rows that fill them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+Value = str | int | float | None
+
+Row = Mapping[str, Value]
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: its `key` in a row, its headers, the `spec` that rounds it, its `width` in a text table.
+
+    A column without a `spec` holds text and is aligned to the left.
+    """
+
+    key: str
+    header: str
+    latex: str
+    spec: str
+    width: int
+
+    @property
+    def kind(self) -> type[str] | type[int] | type[float]:
+        """The type of its values."""
+        return int if self.spec == "d" else float if self.spec else str
+
+
+COLUMNS = {
+    column.key: column
+    for column in (
+        Column("knot", "knot", "knot", "", 12),
+        Column("n", "n", "$n$", "d", 6),
+        Column("components", "components", "components", "d", 10),
+        Column("dl", "dl", "$dl$", ".8f", 10),
+        Column("l_p", "L_p", "$L_p$", ".6f", 11),
+        Column("l_c", "L_c", "$L_c$", ".6f", 11),
+        Column("l_a", "L_a", "$L_a=(4 L_p+L_c)/5$", ".6f", 11),
+        Column("dispersion", "dispersion", "dispersion", ".1e", 10),
+        Column("min_rad", "MinRad", "$MinRad$", ".9f", 12),
+        Column("sr", "SR", "$SR$", ".9f", 12),
+        Column("r_s", "R_s", "$R_s$", ".9f", 12),
+        Column("r_c", "R_c", "$R_c$", ".9f", 12),
+        Column("length", "Length(P)", "$Length(P)$", ".6f", 12),
+        Column("inscribed_length", "Length(K_P)", "$Length(K_P)$", ".6f", 12),
+        Column("overlap", "overlap", "overlap", ".1e", 8),
+        Column("residual", "residual", "residual", ".1e", 8),
+        Column("mu", "mu", "$\\mu$", ".1e", 8),
+        Column("excess", "excess", "excess", ".1e", 8),
+        Column("trials", "trials", "trials", "d", 6),
+        Column("hits", "hits", "hits", "d", 5),
+        Column("variant", "variant", "variant", "d", 8),
+        Column("sweeps", "sweeps", "sweeps", "d", 9),
+        Column("factorisations", "factorisations", "factorisations", "d", 14),
+        Column("published", "published", "published", ".4f", 10),
+        Column("source", "source", "source", "", 18),
+        Column("l_a_difference", "L_a-published", "$L_a-$published", "+.4f", 13),
+        Column("l_c_difference", "L_c-published", "$L_c-$published", "+.4f", 13),
+        Column("limit", "limit", "limit", ".5f", 10),
+        Column("limit_error", "error", "error", ".1e", 8),
+        Column("limit_difference", "limit-published", "limit$-$published", "+.4f", 15),
+        Column("n_fine", "n(fine)", "$n$ (fine)", "d", 7),
+        Column("l_c_fine", "L_c(fine)", "$L_c$ (fine)", ".6f", 11),
+        Column("seed", "seed", "seed", "d", 6),
+        Column("type", "type", "type", "", 9),
+        Column("seconds", "seconds", "seconds", ".2f", 9),
+        Column("status", "status", "status", "", 12),
+        Column("file", "file", "file", "", 12),
+    )
+}
+
+_KEYS = {name.casefold(): column.key for column in COLUMNS.values() for name in (column.header, column.key)}
+
+DEFAULT = ("knot", "n", "dl", "l_p", "l_c", "l_a")
+
+
+def key_of(name: str) -> str:
+    """Return the key of the column of this name: its key or its header, in any case. Raises `ValueError`."""
+    try:
+        return _KEYS[name.strip().casefold()]
+    except KeyError:
+        raise ValueError(f"unknown column {name!r}; the columns are: {', '.join(COLUMNS)}") from None
+
+
+def column_of(name: str) -> Column | None:
+    """Return the column of this name, likewise, if there is one."""
+    return COLUMNS.get(_KEYS.get(name.strip().casefold(), ""))

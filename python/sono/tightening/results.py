@@ -1,0 +1,64 @@
+"""What a tightening gives: the rope, and before that where it stands or why it stopped."""
+
+from dataclasses import dataclass
+
+from sono._core import PolishStatus, Status
+from sono.curve import Curve, Forces, Measures
+from sono.records import Record
+from sono.tightening.plan import Stage
+
+
+class Stopped(Exception):  # noqa: N818 - no error, a request that was followed
+    """The run was stopped before its end; what it has is in `Run.best`."""
+
+
+class KnotTypeError(ValueError):
+    """A rope came out as another knot than the curve that was given, and is not delivered: a bug."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Tight(Record):
+    """A tightened curve.
+
+    `curve` is scaled to R_s = 1; `measures` is what it measures.
+    `converged` tells whether the last engine reached its end: the polish a residual below 1e-8 at mu = 1e-11,
+    SONO the dispersion and overlaps that the settings ask for. `shapes` has the L_a of each trial's shape,
+    all at the same coarse n, and `failed` says why other trials came to nothing. `loosened` tells that the
+    curve, as it was given, held only a thin rope, and was first loosened by isotopic moves. `sweeps`,
+    `factorisations` and `seconds` count from the start of the run.
+
+    Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
+    those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
+    constraint's multiplier and slack, and `excess`, the sum of these products, tells by how much a converged
+    rope is longer than the local minimum. Otherwise these are None. No forces are fitted to a rope that was
+    stopped.
+    """
+
+    curve: Curve
+    measures: Measures
+    converged: bool
+    shapes: list[float]
+    failed: list[str]
+    loosened: bool
+    sweeps: int
+    factorisations: int
+    seconds: float
+    residual: float | None = None
+    mu: float | None = None
+    excess: float | None = None
+    forces: Forces | None = None
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run stands: the rung it is on (`stage`, `n`), the n it climbs to, and the core's status.
+
+    `status` is None as long as the rung is only just beginning. `trial` counts the trials, this one included,
+    from 1.
+    """
+
+    stage: Stage
+    n: int
+    target: int
+    trial: int
+    status: Status | PolishStatus | None
