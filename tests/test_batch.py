@@ -88,7 +88,7 @@ def test_a_failed_trial_is_not_forgotten(job: Job, monkeypatch: pytest.MonkeyPat
     begin = Run._engine
 
     def engine(self: Run, stage: Stage, n: int) -> Any:
-        if stage == "trial" and self.shapes:
+        if stage == "trial" and self.plan.shapes:
             raise PanicError("index out of bounds")
         return begin(self, stage, n)
 

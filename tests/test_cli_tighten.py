@@ -343,9 +343,11 @@ class TestTimeLimit:
         sono(*line, *AT_ONCE)
         path = folder / "3_1.checkpoint.json"
         state = checkpoints.load(path, task.KIND)
-        wrong = {"curve": ["AAAA"], "rungs": [3], "worker": ["Polish", "{}"], "targets": None, "more": 1}
-        for key, value in wrong.items():
-            checkpoints.save(path, task.KIND, state | {"run": state["run"] | {key: value}})
+        run = state["run"]
+        of_plan = {"curve": ["AAAA"], "rungs": [3], "targets": None, "trial": {"stage": "anneal"}, "more": 1}
+        wrong = [{"plan": run["plan"] | {key: value}} for key, value in of_plan.items()]
+        for part in (*wrong, {"engine": ["Polish", "{}"]}, {"more": 1}, {"work": None}):
+            checkpoints.save(path, task.KIND, state | {"run": run | part})
             result = sono(*line, "--resume")
             assert result.exit_code == 1
             assert result.stderr.startswith("sono: 3_1.checkpoint.json: holds no state of a run (")

@@ -20,8 +20,7 @@ from sono.searching import minima, search, trials
 from sono.searching.minima import Shape, radii_of_gyration
 from sono.searching.search import Search
 from sono.searching.trials import Source, attempt, finish, refine, reseat
-from sono.tightening import Stopped
-from sono.tightening import run as pipeline
+from sono.tightening import Stopped, plan, trial
 
 SHARE = trials.GENTLE
 """The share of gentle anneals, as it is outside of these tests."""
@@ -107,7 +106,7 @@ def test_a_trial_that_fails_is_a_failed_trial(monkeypatch: pytest.MonkeyPatch, s
         monkeypatch.setattr(Source, "start", failing(Source.start))
     else:
         engine = {"collapse": "Collapse", "anneal": "Tightener", "polish": "Polish"}[stage]
-        monkeypatch.setattr(trials, engine, failing(getattr(_core, engine)))
+        monkeypatch.setattr(trial, engine, failing(getattr(_core, engine)))
     found = run("3_1", 3)
     assert (found.trials, found.failed, found.changed) == (3, 1, 0)
     assert found.minima[0].tight
@@ -122,7 +121,7 @@ def test_what_cannot_be_refined_or_finished_leaves_the_rest(monkeypatch: pytest.
         raise CurveError("too coarse")
 
     monkeypatch.setattr(trials, "Polish", refuse)
-    monkeypatch.setattr(pipeline, "Polish", refuse)
+    monkeypatch.setattr(plan, "Polish", refuse)
     assert refine(shape) is None
     assert finish(minimum, 300) is None
     assert reseat(minimum) is minimum
@@ -267,7 +266,7 @@ def test_a_hot_anneal(monkeypatch: pytest.MonkeyPatch) -> None:
         anneals.append(json.loads(arguments[3]))
         return _core.Tightener(*arguments)
 
-    monkeypatch.setattr(trials, "Tightener", spy)
+    monkeypatch.setattr(trial, "Tightener", spy)
     shape = attempt(source("4_1"), 1)
     assert anneals == [trials.HOT_ANNEAL | {"seed": 1}]
     assert shape.curve is not None
@@ -288,7 +287,7 @@ def test_a_search_anneals_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
         anneals.append(settings)
         return _core.Tightener(*arguments)
 
-    monkeypatch.setattr(trials, "Tightener", spy)
+    monkeypatch.setattr(trial, "Tightener", spy)
     found = run("3_1", 12)
     assert len(anneals) == 12
     assert {anneals.count(trials.HOT_ANNEAL), anneals.count(trials.GENTLE_ANNEAL)} == {4, 8}

@@ -21,6 +21,7 @@ from sono.patience import patiently
 from sono.starts.drawing import divided
 from sono.tightening import Method, Progress, Run, Stopped, engines
 from sono.tightening import run as pipeline
+from sono.tightening.coarser import FINER
 from sono.tightening.settings import MOST
 
 PROMPT = 10
@@ -79,7 +80,7 @@ def test_a_stop_while_the_core_is_busy(monkeypatch: pytest.MonkeyPatch, stage: s
 
     def hold(call: Callable[..., Any]) -> Callable[..., Any]:
         def held(*arguments: Any) -> Any:
-            if run.rungs[0][0] == stage and run.shapes:
+            if run.plan.rung[0] == stage and run.plan.shapes:
                 stop.now = True
                 stuck.set()
                 assert free.wait(60)
@@ -112,9 +113,9 @@ def test_a_stop_while_the_core_is_busy(monkeypatch: pytest.MonkeyPatch, stage: s
 
 def test_what_is_stopped_at_once_is_not_much_finer_than_what_was_asked_for() -> None:
     run = Run(ring(5000), [60], {})
-    run.type = fingerprint(run.curve)
+    run.type = fingerprint(run.plan.curve)
     best = run.best()
-    assert best.measures.n <= pipeline.FINER * 60
+    assert best.measures.n <= FINER * 60
     assert best.measures.r_s == pytest.approx(1)
     trefoil = _core.refine(package.tighten(starts.start("3_1"), 60, trials=1).curve, 3000)
     tight = Run(trefoil, [100], {}).best()

@@ -112,6 +112,11 @@ class Measures(Record):
     l_c: float | None
     l_a: float | None
 
+    @property
+    def l_a_or_l_p(self) -> float:
+        """L_a, or L_p where there is none: what ropes of one edge length are compared by."""
+        return self.l_a or self.l_p
+
     @classmethod
     def of(cls, found: Any) -> "Measures":
         """Take over what the core has measured."""

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.curve import Components, Measures
+from sono.curve import Components
 from sono.records import Record
 
 Radii: TypeAlias = NDArray[np.float64]
@@ -108,8 +108,3 @@ def alike(one: Radii, other: Radii) -> bool:
     """Tell whether radii of gyration are those of one shape."""
     # A flat curve has a radius of 0.
     return bool((abs(one - other) <= SAME_RADII * np.maximum(other, other.max() / 10)).all())
-
-
-def length_of(measures: Measures) -> float:
-    """Return the L_a of a rope, or its L_p if it has none."""
-    return measures.l_a or measures.l_p

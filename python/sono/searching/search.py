@@ -23,7 +23,6 @@ from sono.searching.minima import (
     Minimum,
     Shape,
     alike,
-    length_of,
     merged,
     rank,
 )
@@ -236,5 +235,5 @@ def _minimum(state: dict[str, Any]) -> Minimum:
     curve = unpacked(state["curve"]) or []
     measures = measure(curve)
     intact = max(abs(measures.r_s - 1), measures.dispersion) <= INTACT
-    own = {"curve": curve, "length": length_of(measures), "tight": bool(state["tight"]) and intact}
+    own = {"curve": curve, "length": measures.l_a_or_l_p, "tight": bool(state["tight"]) and intact}
     return Minimum(**state | own | {"met": [np.array(radii, float) for radii in state["met"]]})

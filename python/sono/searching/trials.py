@@ -4,7 +4,6 @@ All are pure functions of a source and the number of its variant, so they may ru
 machines.
 """
 
-import json
 import math
 from collections.abc import Callable
 from contextlib import suppress
@@ -12,17 +11,14 @@ from dataclasses import dataclass, replace
 from typing import Self, TypeAlias, TypeVar
 
 from sono import starts
-from sono._core import Collapse, PanicError, Polish, Tightener
+from sono._core import Collapse, PanicError, Polish
 from sono.curve import Components
 from sono.invariants import Fingerprint, TooEntangledError, fingerprint
-from sono.searching.minima import Minimum, Shape, has_edges, length_of, radii_of_gyration, rank
+from sono.searching.minima import Minimum, Shape, has_edges, radii_of_gyration, rank
 from sono.starts.scramble import scramble
 from sono.tightening import tighten
-from sono.tightening.engines import SLICE, measures_of
-from sono.tightening.plan import HOT
-
-TRIAL_EDGE = 0.45
-"""Edge length of the shapes that trials end in, in radii."""
+from sono.tightening.engines import SLICE, Engine, measures_of
+from sono.tightening.trial import HOT, Recipe, Trial
 
 FINE_EDGE = 0.2
 """Edge length at which minima are compared."""
@@ -45,13 +41,13 @@ OFFSETS = 2
 """Offsets along the rope from which a shape is refined; the shortest result counts."""
 
 MOST_BEADS = 10_000
-"""Beads of a collapsed rope up to which a trial goes on. A thin start may jam at once; the rest is hours."""
+"""Beads up to which a trial goes on. A thin start may jam at once; the rest is hours."""
 
 FAILURES = (ValueError, PanicError)
 """What ends a trial, or the refining of a shape, and nothing else: a `CurveError`, a curve that no scramble
 can be made of, a bug in the core."""
 
-Worker = TypeVar("Worker", Collapse, Tightener, Polish)
+Worker = TypeVar("Worker", bound=Engine)
 
 Watch: TypeAlias = Callable[[], None]
 """Called about ten times a second; whatever it raises stops the work."""
@@ -92,23 +88,22 @@ class Source:
 
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
+    anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
+    seed = abs(variant)
+    recipe = Recipe({}, anneal | {"seed": seed}, seed, _spread(*ANNEAL_EDGES, variant))
     try:
-        collapsed = _done(Collapse(source.start(variant, watch), False, "{}"), watch)
-        edge = _spread(*ANNEAL_EDGES, variant)
-        n = max(int(collapsed.status().best.l_p / edge), 3 * len(collapsed.best()))
-        if n > MOST_BEADS:
-            return Shape(variant)
-        anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
-        settings = json.dumps(anneal | {"seed": abs(variant)})
-        annealed = _done(Tightener(collapsed.best(), "anneal", n, settings), watch)
-        n = round(annealed.status().best.l_p / TRIAL_EDGE)
-        polished = _done(Polish(annealed.best(), n, True, abs(variant)), watch)
+        trial = Trial(recipe, source.start(variant, watch))
+        engine = _done(trial.begin(), watch)
+        while trial.take(engine):
+            if trial.n > MOST_BEADS:
+                return Shape(variant)
+            engine = _done(trial.begin(), watch)
     except FAILURES:
         return Shape(variant)
-    curve = polished.best()
+    curve = engine.best()
     if fingerprint(curve) != source.type:
         return Shape(variant, changed=True)
-    return Shape(variant, length_of(measures_of(polished)), radii_of_gyration(curve), curve)
+    return Shape(variant, measures_of(engine).l_a_or_l_p, radii_of_gyration(curve), curve)
 
 
 def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
@@ -119,7 +114,7 @@ def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
         polish = curve and _polished(curve, n, watch)
         if not polish:
             return None
-        curve, length = polish.best(), length_of(measures_of(polish))
+        curve, length = polish.best(), measures_of(polish).l_a_or_l_p
         if has_edges(n, length, FINE_EDGE):
             return _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
     return None
@@ -134,7 +129,7 @@ def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None
     assert tight.residual is not None
     return replace(
         minimum,
-        length=length_of(tight.measures),
+        length=tight.measures.l_a_or_l_p,
         tight=tight.converged,
         residual=tight.residual,
         curve=tight.curve,
@@ -175,7 +170,7 @@ def _polished(curve: Components, n: int, watch: Watch) -> Polish | None:
         with suppress(*FAILURES):
             found.append(_done(Polish(curve, n, False, offset), watch))
     return min(
-        found, key=lambda polish: (not _is_tight(polish), length_of(measures_of(polish))), default=None
+        found, key=lambda polish: (not _is_tight(polish), measures_of(polish).l_a_or_l_p), default=None
     )
 
 
@@ -184,7 +179,7 @@ def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
     status = polish.status()
     return replace(
         minimum,
-        length=length_of(measures_of(polish)),
+        length=measures_of(polish).l_a_or_l_p,
         tight=_is_tight(polish),
         residual=status.residual,
         curve=polish.best(),

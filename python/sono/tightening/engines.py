@@ -10,7 +10,7 @@ Seen = tuple[Status | PolishStatus, Components]
 SLICE = 0.1
 """Seconds between two looks at the run."""
 
-ENGINES: dict[str, type[Engine]] = {engine.__name__: engine for engine in (Collapse, Tightener, Polish)}
+_ENGINES: dict[str, type[Engine]] = {engine.__name__: engine for engine in (Collapse, Tightener, Polish)}
 
 
 def as_seen(worker: Engine) -> Seen:
@@ -21,6 +21,16 @@ def as_seen(worker: Engine) -> Seen:
 def advanced(worker: Engine) -> Seen:
     """Let an engine work for a slice; return where it stands then, and its best state."""
     return worker.advance(SLICE), worker.best()
+
+
+def saved(engine: Engine | None) -> list[str] | None:
+    """Return an engine as texts; `restored` is the inverse."""
+    return engine and [type(engine).__name__, engine.state()]
+
+
+def restored(state: list[str] | None) -> Engine | None:
+    """Return the engine that was saved so. Raises an error of any kind for what is no state."""
+    return _ENGINES[state[0]].restore(state[1]) if state else None
 
 
 def measures_of(worker: Engine) -> Measures:

@@ -1,21 +1,27 @@
-"""Which rungs lead to a tight rope, and what each is begun with.
+"""Which rungs lead to tight ropes, and from what each begins.
 
-A trial collapses the curve, anneals it on few beads and polishes it there: its rungs are "collapse", "anneal"
-and "trial". From the best shape "climb" rungs, each with twice the vertices of the one before, lead to the
-last, a "polish". With the method "sono" there is one trial, and "settle" rungs in place of the polished ones.
+First a shape is found: the stages of several trials are "collapse", "anneal" and "trial". From the best shape
+"climb" rungs, each with twice the vertices of the one before, lead to the last, a "polish". With the method
+"sono" one curve is collapsed, and rungs "anneal", "reanneal" and "settle" of SONO come in place of the
+polished ones; with "polish" there is no shape to be found.
 """
 
-from typing import Any, Literal
+import json
+import math
+from dataclasses import dataclass, field
+from typing import Any, Literal, Self, TypeVar, cast
 
-from sono.curve import Measures
-from sono.tightening.settings import Method
+from sono._core import Polish, Tightener
+from sono.curve import Components, Measures, measure, packed, unpacked
+from sono.tightening.engines import Engine
+from sono.tightening.settings import TRIALS, Method, default_settings
+from sono.tightening.trial import COARSE, HOT, Recipe, Trial, coarsest
 
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 
 Rung = tuple[Stage, int]
 
-COARSE = 0.7
-"""Edges of a shape as it is found are at most so long, and at least half of it, where n allows; in radii."""
+Error = TypeVar("Error", bound=Exception)
 
 FINE = 0.5
 """Edges of a rope that SONO refines to the next n are at most so long; in radii."""
@@ -36,41 +42,211 @@ HOPELESS = 1.3
 """A run whose first trial needs so many times the vertices asked for makes no other: what trials from one
 curve need differs by a few percent as a rule, and by a sixth at most as far as is known."""
 
-HOT = 0.5
-"""Violation tolerated at the start of every other trial's anneal; it crosses higher barriers."""
 
-CLIMB: dict[Method, tuple[Stage, Stage]] = {
-    "both": ("climb", "polish"),
-    "polish": ("climb", "polish"),
-    "sono": ("settle", "settle"),
-}
+@dataclass
+class Plan:
+    """What has been found so far, and what is to be done for the first of the `targets`.
+
+    `curve` is what the next rung begins with, and `start` the curve of all trials, which may have been
+    `loosened`. While a shape is looked for there is a `trial`, and `rungs` are empty. `shape` is the best of
+    those found; `shapes` has the length of each, and `failed` says why other trials came to nothing.
+    """
+
+    targets: list[int]
+    settings: dict[str, Any]
+    method: Method = "both"
+    trials: int = TRIALS
+    curve: Components = field(default_factory=list)
+    start: Components = field(default_factory=list)
+    loosened: bool = False
+    trial: Trial | None = None
+    rungs: list[Rung] = field(default_factory=list)
+    shape: Components | None = None
+    shapes: list[float] = field(default_factory=list)
+    failed: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Begin with the first trial, or with the climb."""
+        self.start = self.start or self.curve
+        if self.targets and not (self.trial or self.rungs):
+            if self.method == "polish":
+                self._climb()
+            else:
+                self._try_again()
+
+    @property
+    def rung(self) -> Rung:
+        """The stage that comes next, and its number of vertices."""
+        return (self.trial.stage, self.trial.n) if self.trial else self.rungs[0]
+
+    @property
+    def finds_shapes(self) -> bool:
+        """Whether shapes are still looked for."""
+        return self.trial is not None
+
+    @property
+    def is_last(self) -> bool:
+        """Whether the rung leads to the first target."""
+        return not self.trial and len(self.rungs) == 1
+
+    @property
+    def tried(self) -> int:
+        """The number of trials that are over."""
+        return len(self.shapes) + len(self.failed)
+
+    def seed(self, offset: int = 0) -> int:
+        """Return the seed of this trial, or of this offset along the rope."""
+        return int((self.settings.get("seed", 0) + self.tried + offset) % 2**64)
+
+    def begin(self, offset: int) -> Engine:
+        """Begin the rung. Raises `CurveError`."""
+        if self.trial:
+            return self.trial.begin()
+        (stage, n), seed = self.rungs[0], self.seed(offset)
+        if stage in ("climb", "polish"):
+            return Polish(self.curve, n, stage == "climb", seed)
+        settings = json.dumps(self.settings | {"seed": seed})
+        return Tightener(self.curve, cast("Literal['anneal', 'reanneal', 'settle']", stage), n, settings)
+
+    def take(self, engine: Engine) -> None:
+        """Go on from what the rung has ended in."""
+        self.curve = engine.best()
+        if not self.trial:
+            self.rungs.pop(0)
+        elif self.method == "sono":
+            self.shape, self.trial = self.curve, None
+            self._anneal()
+        elif not self.trial.take(engine):
+            self._compare(Measures.of(engine.status().best))
+            self._next_trial()
+
+    def state(self) -> dict[str, Any]:
+        """Return all that is needed to go on later, for JSON; `Plan.restore` is its inverse."""
+        curves = {name: packed(getattr(self, name)) for name in _CURVES}
+        trial = self.trial and vars(self.trial) | {
+            "recipe": vars(self.trial.recipe),
+            "curve": packed(self.trial.curve),
+        }
+        return vars(self) | curves | {"trial": trial}
+
+    @classmethod
+    def restore(cls, state: dict[str, Any]) -> Self:
+        """Return the plan that gave this state. Raises an error of any kind for what is no state."""
+        curves = {name: unpacked(state[name]) for name in _CURVES}
+        trial = state["trial"]
+        if trial:
+            curve = unpacked(trial["curve"])
+            trial = Trial(**trial | {"recipe": Recipe(**trial["recipe"]), "curve": curve})
+        rungs = [(stage, n) for stage, n in state["rungs"]]
+        return cls(**state | curves | {"trial": trial, "rungs": rungs})
+
+    def take_loosened(self, curve: Components) -> None:
+        """Begin all further trials with a curve that is loosened."""
+        self.start, self.loosened = curve, True
+
+    def fail(self, error: Error, needed: float) -> None:
+        """Do without the trial that failed, and would have `needed` so many vertices; or raise its error."""
+        hopeless = not self.shapes and needed > HOPELESS * self.targets[0]
+        if self.method != "both" or not self.trial or hopeless:
+            raise error
+        self.failed.append(str(error))
+        if not self.shapes and len(self.failed) >= min(AGREEING, self.trials):
+            raise error
+        self._next_trial()
+
+    def next_target(self, reached: bool) -> None:
+        """Turn from the first target, reached or out of reach, to the next."""
+        self.targets.pop(0)
+        if not self.targets:
+            return
+        measures = measure(self.curve)
+        edge = measures.l_p / (measures.n * measures.r_s)
+        if self.method == "sono" and self.shape:
+            if reached and edge < FINE:
+                self._climb()
+            else:
+                self._anneal()
+        elif self.method == "polish" or (reached and edge < COARSE):
+            self._climb()
+        elif self.shape and not reached:  # it could not be refined to that n
+            self.curve = self.shape
+            self._climb()
+        else:  # what suits so few beads may not suit more of them
+            self.shape, self.shapes, self.failed = None, [], []
+            self._try_again()
+
+    def _next_trial(self) -> None:
+        """Plan another trial, or, where there were enough, the climb from the best shape."""
+        if self._enough():
+            self.curve = cast("Components", self.shape)
+            self._climb()
+        else:
+            self._try_again()
+
+    def _try_again(self) -> None:
+        """Plan another trial."""
+        # Edges of other lengths find other shapes; multiples of the golden ratio spread them evenly.
+        least, most = (0.92, 1.1) if _is_hot(self.tried) else (0.6, 0.9)
+        edge = least + (most - least) * ((0.5 + self.tried // 2 * (math.sqrt(5) - 1) / 2) % 1)
+        settings = self.settings | {"seed": self.seed()}
+        if self.method == "both":
+            settings |= _anneal_of(self.tried, default_settings() | self.settings)
+        recipe = Recipe(settings, settings, self.seed(), edge, self.targets[0])
+        self.curve, self.rungs = self.start, []
+        self.trial = Trial(recipe, self.start, self.loosened)
+
+    def _compare(self, measures: Measures) -> None:
+        """Keep the shape of a trial if it is the best."""
+        if self.shape is None or _rank_of_shape(measures) < _rank_of_shape(measure(self.shape)):
+            self.shape = self.curve
+        self.shapes.append(measures.l_a_or_l_p)
+
+    def _enough(self) -> bool:
+        """Tell whether another trial is not worth it."""
+        if self.tried >= self.trials:
+            return True
+        agree = self.shapes and max(self.shapes) < (1 + SAME_SHAPE) * min(self.shapes)
+        long = self.shapes and min(self.shapes) > LONG
+        return bool(agree or long) and len(self.shapes) >= AGREEING
+
+    def _anneal(self) -> None:
+        """Plan SONO's rungs from the collapsed rope to the first target."""
+        assert self.shape is not None
+        self.curve, n = self.shape, self.targets[0]
+        few = coarsest(n, measure(self.shape).l_p)
+        finer = _doubled(few, n)
+        self.rungs = [("anneal", few), *(("reanneal", level) for level in finer[:1])]
+        self.rungs += [("settle", level) for level in finer or [few]]
+
+    def _climb(self) -> None:
+        """Plan the rungs from a tight rope to the first target."""
+        between, last = cast("tuple[Stage, Stage]", _CLIMB[self.method])
+        *levels, n = _doubled(sum(map(len, self.curve)), self.targets[0]) or self.targets[:1]
+        self.trial, self.rungs = None, [*((between, level) for level in levels), (last, n)]
 
 
-def rank_of_shape(measures: Measures) -> tuple[bool, bool, float]:
+_CURVES = ("curve", "start", "shape")
+
+_CLIMB = {"both": ("climb", "polish"), "polish": ("climb", "polish"), "sono": ("settle", "settle")}
+
+
+def _rank_of_shape(measures: Measures) -> tuple[bool, bool, float]:
     """Order shapes of equal edges before others, those with an L_c before others, then by length."""
-    return measures.dispersion > UNEQUAL, measures.l_a is None, measures.l_a or measures.l_p
+    return measures.dispersion > UNEQUAL, measures.l_a is None, measures.l_a_or_l_p
 
 
-def is_hot(trial: int) -> bool:
-    """Tell whether a trial is to have a hot anneal."""
+def _is_hot(trial: int) -> bool:
     return trial % 2 == 1
 
 
-def anneal_of(trial: int, settings: dict[str, Any]) -> dict[str, Any]:
+def _anneal_of(trial: int, settings: dict[str, Any]) -> dict[str, Any]:
     """Return the anneal of a trial: a short one, as it has to find a shape only, and every other one hot."""
     sweeps = max(settings["anneal_sweeps"] // 10, 1)
-    tolerance = HOT if is_hot(trial) else settings["anneal_tolerance"]
+    tolerance = HOT if _is_hot(trial) else settings["anneal_tolerance"]
     return {"anneal_sweeps": sweeps, "anneal_tolerance": tolerance}
 
 
-def coarsest(n: int, length: float) -> int:
-    """Halve n as long as the edges of a rope of this length stay short enough."""
-    while 2 * length / n < COARSE:
-        n //= 2
-    return n
-
-
-def doubled(have: int, n: int) -> list[int]:
+def _doubled(have: int, n: int) -> list[int]:
     """Return the levels above `have` that lead to n by doubling."""
     levels: list[int] = []
     while n > have:

@@ -1,0 +1,90 @@
+"""One trial: a curve is collapsed, annealed with SONO on few beads, and polished there.
+
+Runs and searches share it; a `Recipe` says in what their trials differ.
+"""
+
+import json
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from sono._core import Collapse, CurveError, Polish, Tightener
+from sono.curve import Components
+from sono.tightening.engines import Engine
+
+COARSE = 0.7
+"""Edges of a shape as it is found are at most so long, and at least half of it, where n allows; in radii."""
+
+TRIAL_EDGE = 0.45
+"""Edge length of shapes that are found for no n, in radii."""
+
+HOT = 0.5
+"""Violation tolerated at the start of a hot anneal; it crosses higher barriers."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How a trial is made.
+
+    `collapse` and `anneal` are the settings of these stages; beads of the anneal lie `edge` radii apart, as
+    far as `n` has so many. The shape has n vertices, halved as long as its edges stay below `COARSE`; it has
+    edges of `TRIAL_EDGE` where n is None, and is polished only as far as is worth refining.
+    """
+
+    collapse: dict[str, Any]
+    anneal: dict[str, Any]
+    seed: int
+    edge: float
+    n: int | None = None
+
+
+@dataclass
+class Trial:
+    """A trial under way: the stage that comes next, on `n` vertices, and the curve that it begins with.
+
+    `loosened` tells that the curve was loosened before. `few` is the n of the shape, once it is known.
+    """
+
+    recipe: Recipe
+    curve: Components
+    loosened: bool = False
+    stage: Literal["collapse", "anneal", "trial"] = "collapse"
+    n: int = 0
+    few: int = 0
+
+    def begin(self) -> Engine:
+        """Begin the stage. Raises `CurveError`."""
+        recipe = self.recipe
+        if self.stage == "collapse":
+            return Collapse(self.curve, self.loosened, json.dumps(recipe.collapse))
+        if self.stage == "trial":
+            return Polish(self.curve, self.n, recipe.n is None, recipe.seed)
+        try:
+            return Tightener(self.curve, "anneal", self.n, json.dumps(recipe.anneal))
+        except CurveError:
+            if self.few in (0, self.n):
+                raise
+            # So few beads are too coarse for some component; those of the shape may do.
+            return Tightener(self.curve, "anneal", self.few, json.dumps(recipe.anneal))
+
+    def take(self, engine: Engine) -> bool:
+        """Go on from what the stage has ended in; tell whether there is another one."""
+        recipe, length = self.recipe, engine.status().best.l_p
+        self.curve = engine.best()
+        if self.stage == "collapse":
+            self.n = max(int(length / recipe.edge), 3 * len(self.curve))
+            if recipe.n is not None:
+                self.few = coarsest(recipe.n, length)
+                self.n = min(self.n, self.few)
+            self.stage = "anneal"
+        elif self.stage == "anneal":
+            self.stage, self.n = "trial", self.few or round(length / TRIAL_EDGE)
+        else:
+            return False
+        return True
+
+
+def coarsest(n: int, length: float) -> int:
+    """Halve n as long as the edges of a rope of this length stay short enough."""
+    while 2 * length / n < COARSE:
+        n //= 2
+    return n
