@@ -1,6 +1,5 @@
 """The toroidal model against its geometry: in coordinates, and in decimals of 60 digits."""
 
-import doctest
 from decimal import Decimal, localcontext
 from itertools import count
 
@@ -118,8 +117,3 @@ def test_edge_lengths_outside_are_refused(dl: float) -> None:
             function(dl)
         with pytest.raises(ValueError, match="between 0 and 2"):
             function(np.array([1.0, dl]))
-
-
-def test_example_in_the_documentation() -> None:
-    assert doctest.testmod(model).attempted > 0
-    assert doctest.testmod(model).failed == 0

@@ -11,39 +11,66 @@ link; it is closed, and its last vertex does not repeat the first.
 True
 """
 
-from importlib import import_module
+from importlib import import_module, metadata
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from sono import model as model
     from sono._core import CurveError as CurveError
+    from sono.calls import Comparison as Comparison
+    from sono.calls import compare as compare
+    from sono.calls import forces as forces
+    from sono.calls import measure as measure
+    from sono.calls import names as names
+    from sono.calls import read as read
+    from sono.calls import refine as refine
+    from sono.calls import search as search
+    from sono.calls import start as start
+    from sono.calls import tighten as tighten
+    from sono.calls import write as write
+    from sono.curve import Curve as Curve
     from sono.curve import Forces as Forces
     from sono.curve import Measures as Measures
-    from sono.curve import forces as forces
-    from sono.curve import measure as measure
-    from sono.starts import start as start
+    from sono.formats import FormatError as FormatError
+    from sono.searching import Minimum as Minimum
+    from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
+    from sono.tightening import Stopped as Stopped
     from sono.tightening import Tight as Tight
-    from sono.tightening import tighten as tighten
-
-__version__ = "0.1.0"
 
 _HOMES = {
     "CurveError": "sono._core",
+    "Curve": "sono.curve",
     "Forces": "sono.curve",
     "Measures": "sono.curve",
+    "FormatError": "sono.formats",
+    "KnotTypeError": "sono.tightening",
     "Progress": "sono.tightening",
+    "Stopped": "sono.tightening",
     "Tight": "sono.tightening",
-    "forces": "sono.curve",
-    "measure": "sono.curve",
-    "start": "sono.starts",
-    "tighten": "sono.tightening",
+    "Minimum": "sono.searching",
+    "Comparison": "sono.calls",
+    "compare": "sono.calls",
+    "forces": "sono.calls",
+    "measure": "sono.calls",
+    "names": "sono.calls",
+    "read": "sono.calls",
+    "refine": "sono.calls",
+    "search": "sono.calls",
+    "start": "sono.calls",
+    "tighten": "sono.calls",
+    "write": "sono.calls",
 }
 
-__all__ = ["CurveError", "Forces", "Measures", "Progress", "Tight", "forces", "measure", "start", "tighten"]
+__all__ = ["__version__", "model", *sorted(_HOMES)]
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used, so that `sono --help` need not wait for numpy."""
+    if name == "__version__":
+        return metadata.version("sono")
+    if name == "model":
+        return import_module("sono.model")
     if name not in _HOMES:
         raise AttributeError(f"module 'sono' has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)

@@ -172,7 +172,7 @@ def measure(vertices: CurveLike) -> Measures:
 
     >>> square = [[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]]
     >>> m = measure(square)
-    >>> m.n, m.dl, m.min_rad, round(m.l_p, 6)
+    >>> m.n, m.dl, round(m.min_rad, 6), round(m.l_p, 6)
     (4, 2.0, 1.0, 8.0)
     """
     return Measures.of(_core.measure(as_components(vertices)))

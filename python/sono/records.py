@@ -36,7 +36,8 @@ class Record:
         line = f"{type(self).__name__}({', '.join(shown)})"
         if len(line) <= 100:
             return line
-        return f"{type(self).__name__}(\n    " + ",\n    ".join(shown) + ",\n)"
+        lines = "".join(f"\n{field}," for field in shown).replace("\n", "\n    ")
+        return f"{type(self).__name__}({lines}\n)"
 
     def _repr_html_(self) -> str:
         """Show the fields as a table."""

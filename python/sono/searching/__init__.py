@@ -2,3 +2,7 @@
 
 May import `starts`, `tightening` and what those may.
 """
+
+from sono.searching.minima import Minimum
+
+__all__ = ["Minimum"]

@@ -6,12 +6,12 @@ minimum are alike in their radii; minima themselves are told apart on finer edge
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.curve import Components
+from sono.curve import Components, Measures, measure
 from sono.records import Record
 
 Radii: TypeAlias = NDArray[np.float64]
@@ -63,6 +63,15 @@ class Minimum(Record):
     curve: Components
     met: list[Radii]
     hits: int = 0
+
+    @property
+    def measures(self) -> Measures:
+        """What the rope measures."""
+        return measure(self.curve)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values: what the rope measures first, among the other fields."""
+        return self.measures.to_dict() | super().to_dict()
 
 
 def rank(minimum: Minimum) -> tuple[bool, float]:

@@ -1,6 +1,7 @@
 """What a tightening gives: the rope, and before that where it stands or why it stopped."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from sono._core import PolishStatus, Status
 from sono.curve import Curve, Forces, Measures
@@ -47,6 +48,11 @@ class Tight(Record):
     mu: float | None = None
     excess: float | None = None
     forces: Forces | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values: what the rope measures first, among the other fields."""
+        values = super().to_dict()
+        return self.measures.to_dict() | {key: values[key] for key in values if key != "measures"}
 
 
 @dataclass(frozen=True)

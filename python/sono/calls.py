@@ -1,0 +1,231 @@
+"""What `import sono` offers: calls that take curves or names, and give records.
+
+A curve is an (n, 3) array of vertices, a sequence of such arrays, one for each component, a `Curve`, or the
+name of a knot. It is closed, and its last vertex does not repeat the first. Lengths are in the unit of the
+vertices, ropelengths are lengths over the RADIUS of the rope.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from sono import _core, curve, formats, starts, tightening
+from sono.curve import Curve as Curve
+from sono.curve import CurveLike, Forces, Measures, as_components
+from sono.jobs.workers import Threads
+from sono.records import Record
+from sono.searching.minima import Minimum, merged
+from sono.searching.search import KEPT, Search
+from sono.searching.trials import FINE_EDGE, Source, Watch, finish
+from sono.tables import published
+from sono.tightening import Method, Progress, Tight
+from sono.tightening.settings import TRIALS
+
+AnyCurve = CurveLike | str
+"""A curve, or the name of a knot."""
+
+
+def read(path: str | os.PathLike[str]) -> Curve:
+    """Read a curve from a file: rows of x y z, a blank line between components, or Geomview VECT.
+
+    A last vertex that repeats the first is dropped; lengths keep the file's unit. Raises `FormatError`, a
+    `ValueError` that names file and line.
+
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "square.txt")
+    >>> write(path, [[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
+    >>> read(path)
+    Curve(4 vertices)
+    """
+    return Curve(formats.read(path).components)
+
+
+def write(path: str | os.PathLike[str], curve: AnyCurve, comments: Sequence[str] = ()) -> None:
+    """Write a curve to a file whose suffix names the format: .txt, .xyz, .dat or none are text, or .vect.
+
+    Coordinates keep every digit, and the file appears whole or not at all; the `comments` come first. Raises
+    `FormatError` where it cannot be written.
+    """
+    formats.write(path, _components(curve), comments)
+
+
+def names() -> list[str]:
+    """Return the names that are built in; others are torus types "T(p,q)", "chain4" and braid words.
+
+    >>> names()[:3], "Hopf" in names()
+    (['3_1', '4_1', '5_1'], True)
+    """
+    return starts.names()
+
+
+def start(name: str, variant: int = 0) -> Curve:
+    """Return a loose conformation of the knot of this name, in units of about one rope radius.
+
+    Each `variant` is another conformation of the same type: see `sono start --help`. Raises `ValueError`,
+    with the nearest known name, for one that is not known.
+
+    >>> start("3_1"), len(start("Hopf"))
+    (Curve(69 vertices), 2)
+    """
+    return Curve(starts.start(name, variant))
+
+
+def measure(vertices: AnyCurve) -> Measures:
+    """Measure a curve at the scale it has.
+
+    Raises `CurveError`, a `ValueError`, for one that is no embedded closed curve. Source: J. Baranska,
+    P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots", section 2; for unequal edges L_c stays
+    an upper bound.
+
+    >>> square = [[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]]
+    >>> measure(square).n, round(measure(square).l_p, 6)
+    (4, 8.0)
+    """
+    return curve.measure(_components(vertices))
+
+
+def forces(vertices: AnyCurve) -> Forces:
+    """Find the forces that come nearest to balance on a curve, scaled to R_s = 1; see `Forces`.
+
+    Raises `CurveError` for a curve that is not embedded.
+
+    >>> forces(tighten("3_1", 60)).residual < 1e-6
+    True
+    """
+    return curve.forces(_components(vertices))
+
+
+def tighten(
+    vertices: AnyCurve | Tight,
+    n: int | None = None,
+    *,
+    dl: float | None = None,
+    method: Method = "both",
+    trials: int = TRIALS,
+    seed: int | None = None,
+    time_limit: float | None = None,
+    settings: dict[str, Any] | None = None,
+    watch: Callable[[Progress], object] = lambda _: None,
+) -> Tight:
+    """Tighten a curve of any scale to a rope of radius 1.
+
+    The rope has `n` vertices, all components together, 480 by default; or its edges are `dl` radii long, at
+    most 1, as far as n is a whole number. With the method "both" SONO finds shapes in up to `trials` trials
+    and the polish makes the best one exact; "sono" and "polish" do without the other. `settings` replaces
+    some of SONO's, among them the seed.
+
+    `watch` is called about ten times a second. If it returns True, and after `time_limit` seconds, the best
+    state so far is returned, with `converged` False; what it raises ends the run and passes through.
+
+    Raises `CurveError` for a curve that cannot be tightened (with so few vertices), `ValueError` for a wrong
+    n, dl, method or setting. A rope of another knot type than the curve is never returned: `KnotTypeError`.
+
+    >>> tight = tighten("3_1", 60)
+    >>> tight.converged, round(tight.measures.l_a, 3)
+    (True, 32.719)
+    >>> round(tighten("3_1", dl=0.2).measures.dl, 2)
+    0.2
+    """
+    return tightening.tighten(
+        _components(vertices),
+        n,
+        dl=dl,
+        method=method,
+        trials=trials,
+        seed=seed,
+        time_limit=time_limit,
+        settings=settings,
+        watch=watch,
+    )
+
+
+def refine(vertices: AnyCurve | Tight, n: int) -> Curve:
+    """Return n vertices on the inscribed knot K_P of a rope, with equal edges on each component.
+
+    Raises `CurveError` where there are too few for the curve, `ValueError` for n below 3 a component.
+
+    >>> refine(tighten("3_1", 60), 240)
+    Curve(240 vertices)
+    """
+    return Curve(_core.refine(_components(vertices), n))
+
+
+def search(
+    knot: AnyCurve,
+    trials: int = 64,
+    *,
+    jobs: int = 1,
+    seed: int = 0,
+    minima: int = 5,
+    dl: float = FINE_EDGE,
+    watch: Watch = lambda: None,
+) -> list[Minimum]:
+    """Search for the shortest tight ropes of a knot; return the `minima` shortest, the best one first.
+
+    So many `trials` begin with other conformations and end in local minima, whose edges are `dl` radii long.
+    They are made by so many `jobs`, threads, on which nothing depends. `watch` is called about ten times a
+    second by each of them; what it raises ends the search and passes through.
+
+    >>> best, *others = search("3_1", trials=2)
+    >>> best.tight, round(best.length, 3)
+    (True, 32.743)
+    """
+    source = Source.of(_components(knot), knot if isinstance(knot, str) else None, watch)
+    found = Search(seed, max(KEPT, minima))
+    with Threads(jobs) as workers:
+
+        def submit(function: Callable[..., Any], *args: Any, rank: int | None = None) -> Callable[[], Any]:
+            return workers.submit(function, *args, watch=watch, rank=-1 if rank is None else rank)
+
+        for _ in found.run(source, trials, submit, jobs):
+            pass
+        best = found.minima[:minima]
+        if dl != FINE_EDGE:
+            waiting = [submit(finish, minimum, round(minimum.length / dl)) for minimum in best]
+            finer = [found.confirmed(minimum(), source) for minimum in waiting]
+            best = merged(filter(None, finer))
+    return [replace(minimum, curve=Curve(minimum.curve)) for minimum in best]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Record):
+    """A rope's lengths beside the shortest published ropelength of its knot, and where that is from.
+
+    Differences are ours less the published; `limit`, with its error, estimates L_a on ever finer edges. What
+    is not known is None.
+    """
+
+    knot: str
+    l_a: float | None
+    l_c: float | None
+    limit: float | None
+    limit_error: float | None
+    published: float | None
+    source: str | None
+    l_a_difference: float | None
+    l_c_difference: float | None
+    limit_difference: float | None
+
+
+def compare(rope: AnyCurve | Tight, knot: str) -> Comparison:
+    """Compare a rope's lengths with the shortest published ropelength of a knot.
+
+    Raises `CurveError` for a curve that is not embedded. The rope's type is taken as said.
+
+    >>> compare(tighten("3_1", 240), "3_1").published
+    32.7436
+    """
+    measures = measure(_components(rope))
+    row = published.extrapolated({"knot": knot, "n": measures.n, "l_a": measures.l_a, "l_c": measures.l_c})
+    found = published.beside(row, published.table())
+    get: Callable[[str], Any] = partial(dict(found).get)
+    return Comparison(*(get(key) for key in Comparison.__dataclass_fields__))
+
+
+def _components(vertices: AnyCurve | Tight) -> list[Any]:
+    """Return the components of whatever stands for a curve."""
+    if isinstance(vertices, Tight):
+        vertices = vertices.curve
+    return list(starts.start(vertices)) if isinstance(vertices, str) else as_components(vertices)
