@@ -150,6 +150,16 @@ impl Curve {
         self.edge_lengths(c).sum()
     }
 
+    /// Mean edge length of each component.
+    pub fn mean_edges(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.components()).map(|c| self.component_length(c) / self.range(c).len() as f64)
+    }
+
+    /// Longest edge of each component.
+    pub fn longest_edges(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.components()).map(|c| self.edge_lengths(c).fold(0., f64::max))
+    }
+
     /// Length of all components together.
     pub fn length(&self) -> f64 {
         (0..self.components()).map(|c| self.component_length(c)).sum()

@@ -25,8 +25,8 @@
 
 use glam::{DVec3, IVec3};
 
-use crate::curve::Curve;
-use crate::segments;
+use crate::geometry::curve::Curve;
+use crate::geometry::segments;
 
 /// How far apart along the curve two vertices must be to count as a pair: by arclength (the
 /// measures) or by index distance (the engines). Vertices of different components always count.

@@ -10,8 +10,8 @@
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
-use crate::curve::Curve;
-use crate::segments;
+use crate::geometry::curve::Curve;
+use crate::geometry::segments;
 
 /// Vertices in slots, linked to rings; what is removed leaves its slot empty.
 #[derive(Debug, Clone)]

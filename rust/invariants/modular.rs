@@ -9,7 +9,7 @@ pub const PRIME: u64 = 2_147_482_951;
 /// one place add up. Gaussian elimination, each time with the shortest row that is left.
 ///
 /// ```
-/// use sono::modular::determinant;
+/// use sono::invariants::modular::determinant;
 /// assert_eq!(determinant(2, &[(0, 0, 2), (0, 1, 1), (1, 0, 5), (1, 1, 3)]), 1);
 /// ```
 pub fn determinant(n: usize, entries: &[(usize, usize, u64)]) -> u64 {

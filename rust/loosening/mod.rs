@@ -8,7 +8,7 @@
 //!    power this would be the ropelength. What has room then is removed, too.
 //! 3. Long edges are halved, and the repulsion goes on.
 //!
-//! Every move is an isotopy, proved exactly ([`crate::sticks`]); steps are as long as the distance
+//! Every move is an isotopy, proved exactly ([`crate::geometry::sticks`]); steps are as long as the distance
 //! of strands, so that a gap of 1e-6 of the size opens in some tens of sweeps.
 //!
 //! ```
@@ -29,12 +29,12 @@ use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::curve::{Curve, turning_angle};
-use crate::embedded::check_embedded;
 use crate::error::{Error, Result};
-use crate::projection::fewest_crossings;
-use crate::segments::closest;
-use crate::sticks::Sticks;
+use crate::geometry::curve::{Curve, turning_angle};
+use crate::geometry::embedded::check_embedded;
+use crate::geometry::segments::closest;
+use crate::geometry::sticks::Sticks;
+use crate::invariants::projection::fewest_crossings;
 
 /// Way of a shaken vertex as a share of the distance to what it might meet.
 const SHAKE: f64 = 0.01;

@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::newton::Matrix;
 use super::problem::{Term, chain_terms};
-use crate::curve::Curve;
+use crate::beads::{least_index_distance, most_bend};
+use crate::geometry::curve::Curve;
+use crate::geometry::neighbours::{Separation, for_each_close_pair};
 use crate::measures::measure;
-use crate::neighbours::{Separation, for_each_close_pair};
-use crate::procedures::{least_index_distance, most_bend};
 
 /// The forces in a rope of radius 1, in units of its mean tension.
 #[derive(Debug, Clone, PartialEq)]

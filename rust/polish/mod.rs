@@ -3,7 +3,7 @@
 //! SONO converges linearly; a tight rope solves a sparse smooth optimisation problem
 //! ([`problem`]), and Newton's method reaches the exact state in some tens of factorisations. Every
 //! iterate is a valid rope: constraints hold strictly along each step, so that no strand passes
-//! another (see [`crate::rope`]), and stopping early loses nothing.
+//! another (see [`crate::sono::passage`]), and stopping early loses nothing.
 //!
 //! With multipliers z the perturbed conditions are grad f = sum z grad g and z g = mu w(g), w = 1
 //! for the logarithmic barrier and w = (1 - g/hat)^2 for the contacts' clamped one. An iteration is
@@ -24,14 +24,13 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::curve::Curve;
+use crate::beads::{LONGEST_EDGE, SHORTEST_EDGE, least_index_distance, most_bend};
 use crate::error::Result;
-use crate::inscribed::{refine, rope_curve};
+use crate::geometry::curve::Curve;
+use crate::geometry::neighbours::{Separation, for_each_close_pair};
 use crate::measures::{Measures, measure};
-use crate::neighbours::{Separation, for_each_close_pair};
-use crate::procedures::{least_index_distance, most_bend};
-use crate::rope::{LONGEST_EDGE, Rope};
-use crate::tighten::{Outcome, scaled};
+use crate::outcome::Outcome;
+use crate::resample::{refine, resampled, rope_curve, scaled};
 pub use forces::{Forces, balance};
 use newton::{Newton, Step};
 use problem::{Term, chain_terms, clamped_logarithm, longest_step};
@@ -60,8 +59,6 @@ const TO_THE_BOUNDARY: f64 = 0.99;
 const KEEP: f64 = 100.;
 /// Longest way of a bead in one step, in radii.
 const LONGEST_WAY: f64 = 0.1;
-/// Shortest edge, as a share of the longest that there may be: see [`crate::passage`] for why.
-pub(crate) const SHORTEST_EDGE: f64 = 0.9;
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
 const UNEQUAL: f64 = 0.04;
 /// Beads of a rope that is made of a curve which is none.
@@ -142,13 +139,13 @@ impl Polish {
     /// `passing` this n, with one that is good enough to be refined.
     ///
     /// # Errors
-    /// [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], and those of [`Rope::resampled`].
+    /// [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], and those of [`resampled`].
     pub fn new(curve: &Curve, n: usize, passing: bool, seed: u64) -> Result<Self> {
         let given = measure(curve);
         let coarse = curve.n() == n && given.l_p < LONGEST_EDGE * n as f64;
         let is_rope = (given.r_c.is_some() || coarse) && given.dispersion < UNEQUAL;
         let made = if is_rope { None } else { Some(rope_curve(curve, MOST_BEADS)?) };
-        let mut curve = Rope::resampled(made.as_ref().unwrap_or(curve), n, seed)?.curve().clone();
+        let mut curve = resampled(made.as_ref().unwrap_or(curve), n, seed)?;
         let bound = |t: &Term, l: &[f64]| {
             let l = l[t.component];
             1e-3 * (l * most_bend(l)).powi(2)

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::problem::Term;
 use super::system::{Symmetric, System, symmetric};
-use crate::curve::Curve;
+use crate::geometry::curve::Curve;
 
 /// What is always added to the diagonal, in units of 1/l, since rigid motions are free.
 const LEAST_SHIFT: f64 = 1e-9;

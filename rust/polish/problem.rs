@@ -6,17 +6,17 @@
 //! - edges `l^2 - |v_(i+1) - v_i|^2 >= 0`: the rope's tension pulls them all to length l;
 //! - bends `l^4 - |v_(i-1) - 2 v_i + v_(i+1)|^2 >= 0`: with edges l the second difference is
 //!   2 l sin(theta/2) long, so this is ControlCurvature's theta <= 2 arcsin(l/2); on coarse ropes
-//!   1.235^2 l^2 takes the place of l^4 ([`crate::procedures::most_bend`]);
+//!   1.235^2 l^2 takes the place of l^4 ([`crate::beads::most_bend`]);
 //! - contacts `|v_i - v_j|^2 - 4 >= 0`, for beads at least K apart along the rope
-//!   ([`crate::procedures::least_index_distance`]).
+//!   ([`crate::beads::least_index_distance`]).
 //!
 //! Each is g = s |y|^2 + h(l) >= 0, y being a combination of two or three vertices: a [`Term`].
 //! Edges and bends are convex (s = -1), so that their multipliers only stiffen the problem.
 
 use glam::DVec3;
 
-use crate::curve::Curve;
-use crate::procedures::{COARSE, most_bend};
+use crate::beads::{COARSE, most_bend};
+use crate::geometry::curve::Curve;
 
 /// One constraint, where the rope is.
 #[derive(Debug, Clone, Copy)]

@@ -193,7 +193,7 @@ fn crossings<'py>(
     most: usize,
 ) -> PyResult<CrossingArrays<'py>> {
     let curve = curve(components)?;
-    let found = released(py, || crate::projection::crossings(&curve, most))?;
+    let found = released(py, || crate::invariants::projection::crossings(&curve, most))?;
     Ok((
         PyArray1::from_iter(py, found.iter().map(|c| c.over)),
         PyArray1::from_iter(py, found.iter().map(|c| c.under)),
@@ -207,7 +207,7 @@ fn determinant(py: Python<'_>, n: usize, entries: Vec<(usize, usize, u64)>) -> P
     if entries.iter().any(|&(i, j, _)| i.max(j) >= n) {
         return Err(PyValueError::new_err("an entry lies outside the matrix"));
     }
-    released(py, || crate::modular::determinant(n, &entries))
+    released(py, || crate::invariants::modular::determinant(n, &entries))
 }
 
 #[pyfunction]

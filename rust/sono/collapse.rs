@@ -1,7 +1,7 @@
 //! From any embedded curve to a jammed rope.
 //!
 //! A curve that holds a rope of a thousand beads is collapsed as it is. A thinner one is first
-//! loosened ([`crate::loosen`]), and so is a rope that has jammed at many times the length that its
+//! loosened ([`crate::loosening`]), and so is a rope that has jammed at many times the length that its
 //! diagram asks for: a knot of c crossings needs some 9 c radii of rope, 12 at most of the knots whose
 //! ropelength is known.
 
@@ -9,14 +9,16 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use crate::curve::Curve;
 use crate::error::{Error, Result};
-use crate::loosen::{Loosening, simplified};
+use crate::geometry::curve::Curve;
+use crate::invariants::projection::fewest_crossings;
+use crate::loosening::{Loosening, simplified};
 use crate::measures::measure;
-use crate::projection::fewest_crossings;
-use crate::rope::Violation;
-use crate::settings::Settings;
-use crate::tighten::{Outcome, Stage, Status, Tightener, scaled};
+use crate::outcome::Outcome;
+use crate::resample::scaled;
+use crate::sono::rope::Violation;
+use crate::sono::settings::Settings;
+use crate::sono::tighten::{Stage, Status, Tightener};
 
 /// Beads of a rope in the curve as it is, and of one in a loosened curve.
 const AS_IT_IS: usize = 1200;

@@ -30,8 +30,8 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::curve::Curve;
-use crate::segments;
+use crate::geometry::curve::Curve;
+use crate::geometry::segments;
 
 /// Whether no strand passes another while the beads move straight from `before` to where `curve` has
 /// them. Pairs that count are in `pairs`, or stay `unlisted` apart; `least[c]` is k for component c.
@@ -122,8 +122,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::polish::SHORTEST_EDGE;
-    use crate::procedures::{least_index_distance, most_bend};
+    use crate::beads::{SHORTEST_EDGE, least_index_distance, most_bend};
 
     /// A regular polygon of edges 1 in the plane, its vertices as `at` puts them.
     fn polygon(n: usize, at: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {

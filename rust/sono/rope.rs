@@ -4,24 +4,21 @@
 //! Until the next list no bead leaves the ball of radius skin/2 about its place of that time (a step
 //! that leads out of it ends on its surface, and a new list is made). So beads that are not listed
 //! never overlap. Before the new list the straight way from the old places to the new ones is looked
-//! at as a whole: if a strand may pass another on it ([`crate::passage`]), all is undone that followed
+//! at as a whole: if a strand may pass another on it ([`crate::sono::passage`]), all is undone that followed
 //! the last list. So it is, too, before the rope is looked at in any other way that matters.
 
 use std::ops::Range;
 
 use glam::DVec3;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
-use crate::curve::Curve;
-use crate::error::{Error, Result};
-use crate::inscribed::{coarsen, refine};
+use crate::beads::least_index_distance;
+use crate::geometry::curve::Curve;
+use crate::geometry::neighbours::{Separation, for_each_close_pair};
+use crate::geometry::sticks::Sticks;
 use crate::measures::measure;
-use crate::neighbours::{Separation, for_each_close_pair};
-use crate::passage::stay_apart;
-use crate::procedures::{control_curvature, equalize_edges, least_index_distance, remove_overlaps};
-use crate::sticks::Sticks;
+use crate::sono::passage::stay_apart;
+use crate::sono::procedures::{control_curvature, equalize_edges, remove_overlaps};
 
 /// The thickest skin of the neighbour list, hence the longest way of a bead in one sweep.
 const THICKEST_SKIN: f64 = 0.25;
@@ -32,11 +29,6 @@ const THINNEST_SKIN: f64 = 1e-9;
 /// the shorter the list. One that lasts so long is made anew to learn whether a thinner one will do.
 const SHORT_LIFE: usize = 150;
 const LONG_LIFE: usize = 500;
-
-/// Edges must be shorter: with edges of sqrt 8 R strands fit between beads.
-pub const LONGEST_EDGE: f64 = 2.3;
-/// From this edge length on, a rope is not resampled by taking chords, but straightened.
-const LONGEST_CHORD: f64 = 1.2;
 
 /// What a sweep met before it corrected it, R = 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -81,11 +73,9 @@ impl Rope {
         Self::of(curve)
     }
 
-    /// The same on a curve as it is.
-    fn of(curve: Curve) -> Self {
-        let dl: Vec<f64> = (0..curve.components())
-            .map(|c| curve.component_length(c) / curve.range(c).len() as f64)
-            .collect();
+    /// The same on a curve as it is, whose thickness R_s is 1 or about to be.
+    pub fn of(curve: Curve) -> Self {
+        let dl = curve.mean_edges().collect();
         let mut rope = Self {
             curve,
             dl,
@@ -99,37 +89,6 @@ impl Rope {
         rope.skin = rope.longest_dl().powi(2).min(0.5 * THICKEST_SKIN);
         rope.list_neighbours();
         rope
-    }
-
-    /// A rope on `n` vertices in all, from one on any number: K_P at equal chords, the first
-    /// vertex at random. Where it is `n` already, it is taken as it is.
-    ///
-    /// # Errors
-    /// [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Self> {
-        let shift = Pcg64Mcg::seed_from_u64(seed).random();
-        let given = measure(curve);
-        let on = |n: usize| {
-            if curve.n() == n {
-                return Ok(Self::new(curve.clone()));
-            } else if given.l_p / (n as f64) < LONGEST_CHORD {
-                return Ok(Self::new(refine(curve, n, shift)?));
-            }
-            let mut coarse = coarsen(curve, n, shift)?;
-            coarse.scale(1. / given.r_s);
-            Ok(Self::of(coarse))
-        };
-        let rope = on(n)?;
-        let dl = rope.longest_dl();
-        if dl < LONGEST_EDGE {
-            return Ok(rope);
-        }
-        let (mut needed, mut longest) = (n, dl);
-        while longest >= LONGEST_EDGE {
-            needed = (needed + 1).max((needed as f64 * longest / LONGEST_EDGE) as usize);
-            longest = on(needed)?.longest_dl();
-        }
-        Err(Error::TooCoarse { n, dl, limit: LONGEST_EDGE, needed })
     }
 
     /// Whether a restored rope is one: all beads there are, all numbers are finite.
@@ -249,9 +208,8 @@ impl Rope {
     ///
     /// EE moves a vertex by c_1 (s_i - dl), so this difference is the force along the rope.
     pub fn share_tension(&mut self) {
-        let tension: Vec<_> = (0..self.dl.len())
-            .map(|c| self.curve.component_length(c) / self.curve.range(c).len() as f64 - self.dl[c])
-            .collect();
+        let tension: Vec<_> =
+            self.curve.mean_edges().zip(&self.dl).map(|(mean, dl)| mean - dl).collect();
         let mean = self.curve.ranges().zip(&tension).map(|(r, t)| r.len() as f64 * t).sum::<f64>()
             / self.curve.n() as f64;
         for (dl, t) in self.dl.iter_mut().zip(tension) {

@@ -40,12 +40,13 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
-use crate::curve::Curve;
 use crate::error::Result;
-use crate::inscribed::{refine, rope_curve};
+use crate::geometry::curve::Curve;
 use crate::measures::{Measures, measure};
-use crate::rope::{Rope, Violation};
-use crate::settings::Settings;
+use crate::outcome::Outcome;
+use crate::resample::{refine, resampled, rope_curve, scaled};
+use crate::sono::rope::{Rope, Violation};
+use crate::sono::settings::Settings;
 
 /// Tolerance while collapsing, while the jammed rope is then eased, and at the end of the anneal.
 const COLLAPSED: f64 = 0.3;
@@ -85,18 +86,6 @@ pub enum Stage {
     Reanneal,
     /// Ends with dispersion and overlaps below the final tolerance.
     Settle,
-}
-
-/// Whether a [`Tightener`] is done. Not getting there is no error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// Go on.
-    Running,
-    /// The stage has done what it is for.
-    Tight,
-    /// The final tolerance is out of reach; the best state so far is all there is.
-    Stuck,
 }
 
 /// Where a [`Tightener`] stands.
@@ -164,7 +153,7 @@ impl Tightener {
     /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
     pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         settings.check()?;
-        let mut rope = Rope::resampled(curve, n, settings.seed)?;
+        let mut rope = Rope::of(resampled(curve, n, settings.seed)?);
         jitter(&mut rope, settings.seed);
         let planned = settings.anneal_sweeps.into();
         Ok(Self::new(rope, Stage::Anneal, planned, settings.anneal_tolerance, settings))
@@ -176,7 +165,7 @@ impl Tightener {
     /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
     pub fn reanneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         settings.check()?;
-        let mut rope = Rope::resampled(curve, n, settings.seed)?;
+        let mut rope = Rope::of(resampled(curve, n, settings.seed)?);
         jitter(&mut rope, settings.seed);
         let planned = u64::from(settings.anneal_sweeps.div_ceil(2));
         let tolerance = settings.anneal_tolerance / 6.;
@@ -189,7 +178,7 @@ impl Tightener {
     /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
     pub fn settle(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
         settings.check()?;
-        let rope = Rope::resampled(curve, n, settings.seed)?;
+        let rope = Rope::of(resampled(curve, n, settings.seed)?);
         let tolerance = 0.3 * rope.dl().min(1.).powi(2);
         let planned = n as u64 * u64::from(settings.settle_sweeps);
         Ok(Self::new(rope, Stage::Settle, planned, tolerance, settings))
@@ -371,14 +360,6 @@ impl Tightener {
             best: measure(&self.best.curve),
         }
     }
-}
-
-/// The same shape, whose thickness is `r_s`, with R_s = 1 and its centre at the origin.
-pub(crate) fn scaled(curve: &Curve, r_s: f64) -> Curve {
-    let mut curve = curve.clone();
-    curve.scale(1. / r_s);
-    curve.centre();
-    curve
 }
 
 /// Displaces each bead at random.

@@ -1,0 +1,11 @@
+//! SONO: sweeps of three procedures on a bead rope, and the stages they make up.
+//! Imports `beads`, `resample`, `loosening` and what these import; nothing of `polish`.
+//!
+//! `settings, procedures, passage <- rope <- tighten <- collapse`.
+
+pub mod collapse;
+pub mod passage;
+pub mod procedures;
+pub mod rope;
+pub mod settings;
+pub mod tighten;
