@@ -113,6 +113,20 @@ pub fn for_each_close_pair(
     }
 }
 
+/// Two vertices, the first before the second.
+pub type Pair = (u32, u32);
+
+/// All pairs that count and are closer than `reach`, sorted.
+pub fn close_pairs(curve: &Curve, separation: &Separation, reach: f64) -> Vec<Pair> {
+    let mut pairs = vec![];
+    for_each_close_pair(curve, separation, reach, |i, j, _| {
+        pairs.push((i as u32, j as u32));
+        reach
+    });
+    pairs.sort_unstable();
+    pairs
+}
+
 /// The least distance of a pair that counts; `None` where no pair counts.
 pub fn closest_distance(curve: &Curve, separation: &Separation) -> Option<f64> {
     let mut closest = None;

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::beads::least_index_distance;
 use crate::geometry::curve::Curve;
-use crate::geometry::neighbours::{Separation, for_each_close_pair};
+use crate::geometry::neighbours::{Pair, Separation, close_pairs};
 use crate::geometry::sticks::Sticks;
 use crate::measures::measure;
 use crate::sono::passage::stay_apart;
@@ -54,7 +54,7 @@ pub struct Rope {
     curve: Curve,
     /// Required edge length of each component.
     dl: Vec<f64>,
-    pairs: Vec<(u32, u32)>,
+    pairs: Vec<Pair>,
     /// Least index distance of listed beads, for each component.
     least: Vec<usize>,
     /// Where the beads were when `pairs` was made.
@@ -244,14 +244,7 @@ impl Rope {
     fn list_neighbours(&mut self) {
         self.least = self.dl.iter().map(|&dl| least_index_distance(dl)).collect();
         let separation = Separation::by_index(&self.curve, &self.least);
-        let reach = 2. + self.skin;
-        let pairs = &mut self.pairs;
-        pairs.clear();
-        for_each_close_pair(&self.curve, &separation, reach, |i, j, _| {
-            pairs.push((i as u32, j as u32));
-            reach
-        });
-        pairs.sort_unstable();
+        self.pairs = close_pairs(&self.curve, &separation, 2. + self.skin);
         self.reference.clear();
         self.reference.extend_from_slice(self.curve.vertices());
         self.age = 0;
