@@ -138,6 +138,19 @@ impl Curve {
         (0..v.len()).map(|i| v[i].distance(v[(i + 1) % v.len()]))
     }
 
+    /// Arclength of each vertex from the start of its component.
+    pub fn arclengths(&self) -> Vec<f64> {
+        let mut arclengths = Vec::with_capacity(self.n());
+        for c in 0..self.components() {
+            let mut at = 0.;
+            arclengths.extend(self.edge_lengths(c).map(|s| {
+                at += s;
+                at - s
+            }));
+        }
+        arclengths
+    }
+
     /// Turning angles of component `c`, in radians; angle `i` is that between edges `i - 1` and `i`.
     pub fn turning_angles(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
         let v = self.component(c);

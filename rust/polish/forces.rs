@@ -7,7 +7,8 @@ use super::problem::{Multipliers, Terms, Unknowns, left_over};
 use super::term::Term;
 use crate::beads::{least_index_distance, most_bend};
 use crate::geometry::curve::Curve;
-use crate::geometry::neighbours::{Pair, Separation, close_pairs};
+use crate::geometry::neighbours::{Pair, close_pairs};
+use crate::geometry::separation::Separation;
 use crate::measures::measure;
 
 /// Two beads may press against each other when at most so far out of touch, R = 1; a bead may

@@ -3,7 +3,8 @@
 use super::Polish;
 use super::problem::Terms;
 use crate::beads::least_index_distance;
-use crate::geometry::neighbours::{Pair, Separation, close_pairs};
+use crate::geometry::neighbours::{Pair, close_pairs};
+use crate::geometry::separation::Separation;
 
 /// What a step has to look at.
 pub struct Surroundings {

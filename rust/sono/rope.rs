@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::beads::least_index_distance;
 use crate::geometry::curve::Curve;
-use crate::geometry::neighbours::{Pair, Separation, close_pairs};
+use crate::geometry::neighbours::{Pair, close_pairs};
+use crate::geometry::separation::Separation;
 use crate::geometry::sticks::Sticks;
 use crate::measures::measure;
 use crate::sono::passage::stay_apart;
