@@ -29,4 +29,5 @@ pub use polish::Polish;
 pub use resample::refine;
 pub use sono::collapse::Collapse;
 pub use sono::settings::Settings;
-pub use sono::tighten::{Stage, Status, Tightener};
+pub use sono::stage::Stage;
+pub use sono::tighten::{Status, Tightener};

@@ -2,9 +2,8 @@
 
 use super::barrier::{longest_positive, longest_step};
 use super::newton::Step;
-use super::problem::{Multipliers, Unknowns};
+use super::problem::{Multipliers, Surroundings, Unknowns};
 use super::start::LONGEST_WAY;
-use super::surroundings::Surroundings;
 use super::term::Term;
 use super::{Best, Polish};
 

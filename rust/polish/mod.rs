@@ -44,8 +44,7 @@ use crate::resample::scaled;
 use barrier::Barrier;
 pub use forces::{Forces, balance};
 use newton::Newton;
-use problem::{Multipliers, Terms, Unknowns, left_over};
-use surroundings::Surroundings;
+use problem::{Multipliers, Surroundings, Terms, Unknowns, left_over};
 
 /// The largest imbalance of forces in a tight rope, tension being 1.
 const TIGHT: f64 = 1e-8;
@@ -168,8 +167,7 @@ impl Polish {
     }
 
     fn iterate(&mut self, around: &Surroundings) -> Outcome {
-        let Surroundings { terms, bystanders } = around;
-        let step = self.newton.step(&self.rope, terms, &self.z, bystanders, self.barrier());
+        let step = self.newton.step(&self.rope, around, &self.z, self.barrier());
         let moved = step.is_some_and(|step| self.take(&step, around));
         self.iterations += 1;
         self.judge(moved)

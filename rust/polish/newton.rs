@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::barrier::Barrier;
 use super::direction::Direction;
 use super::matrix::Matrix;
-use super::problem::{Multipliers, Terms, Unknowns};
+use super::problem::{Multipliers, Surroundings, Unknowns};
 use crate::geometry::neighbours::Pair;
 
 /// What is always added to the diagonal, in units of 1/l, since rigid motions are free.
@@ -50,16 +50,16 @@ impl Newton {
         self.factorisations
     }
 
-    /// The step from where `rope` is, `z` being the multipliers of `terms`; `None` if the matrix is
-    /// beyond repair. `bystanders` are pairs that may be contacts soon.
+    /// The step from where `rope` is, `z` being the multipliers of the terms `around` it; `None` if the
+    /// matrix is beyond repair.
     pub fn step(
         &mut self,
         rope: &Unknowns,
-        terms: &Terms,
+        around: &Surroundings,
         z: &Multipliers,
-        bystanders: &[Pair],
         barrier: Barrier,
     ) -> Option<Step> {
+        let Surroundings { terms, bystanders } = around;
         let is_near = |pair: &&Pair| rope.contact(**pair).g < SPARE * barrier.hat;
         let soon = bystanders.iter().filter(is_near).copied();
         self.matrix.analyse(&rope.curve, &terms.contacts, soon);
@@ -130,45 +130,99 @@ mod tests {
         (0..n).map(|i| edge(i).max(bend(i))).fold(0., f64::max)
     }
 
-    /// The whole matrix, its terms' gradients and second derivatives one by one, and the right-hand side.
-    fn dense(
-        curve: &Curve,
-        terms: &Terms,
-        z: &Multipliers,
-        [shift, corner_shift]: [f64; 2],
-    ) -> (Mat<f64>, Vec<f64>) {
-        let n = 3 * curve.n();
-        let size = n + curve.components();
-        let mut matrix = Mat::from_fn(size, size, |i, j| match i == j {
-            true if i < n => shift,
-            true => corner_shift,
-            false => 0.,
-        });
-        let mut rhs = vec![0.; size];
-        for (c, range) in curve.ranges().enumerate() {
-            rhs[n + c] = -(range.len() as f64);
+    /// A rope, what is around it, and multipliers.
+    struct Case {
+        rope: Unknowns,
+        around: Surroundings,
+        z: Multipliers,
+    }
+
+    impl Case {
+        /// Bends near their limit make the edge lengths' part of the matrix indefinite, contacts that
+        /// press hard the vertices'. Some contacts come and some go, so that the pattern has idle pairs,
+        /// or is too small.
+        fn new(round: usize, random: &mut Pcg64Mcg) -> Self {
+            let curve = tangles(random);
+            let slack = [3., 1.02][round % 2];
+            let hard = [1e-6, 0.1, 30.][round % 3];
+            let least = |range| slack * shortest(&curve.vertices()[range]);
+            let rope = Unknowns { l: curve.ranges().map(least).collect(), curve };
+            let (near, bystanders): (Vec<_>, Vec<_>) =
+                close_pairs(&rope).into_iter().partition(|_| random.random_bool(0.7));
+            let terms = rope.terms(&near);
+            assert!(terms.contacts.len() > 20 && terms.iter().all(|t| t.g > 0.));
+            let mut z = terms.map(|t| if t.sign > 0. { hard } else { 1. });
+            z.iter_mut().for_each(|z| *z *= 10f64.powf(random.random_range(-1.0..1.)));
+            Self { rope, around: Surroundings { terms, bystanders }, z }
         }
-        for (t, z) in terms.iter().zip(z.iter()) {
-            let [w, dw] = BARRIER.weight(t);
-            let stiffness = (z - BARRIER.mu * dw) / t.g;
-            let mut gradient = vec![0.; size];
+
+        /// The whole matrix for a shift, term by term.
+        fn matrix(&self, shift: f64) -> Mat<f64> {
+            let (n, size, l) = (3 * self.rope.curve.n(), self.size(), self.rope.l[0]);
+            let diagonal = |i| if i < n { (shift + LEAST_SHIFT) / l } else { shift / l };
+            let mut matrix = Mat::from_fn(size, size, |i, j| if i == j { diagonal(i) } else { 0. });
+            for (t, z) in self.around.terms.iter().zip(self.z.iter()) {
+                let (gradient, [_, dw]) = (self.gradient(t), BARRIER.weight(t));
+                let stiffness = (z - BARRIER.mu * dw) / t.g;
+                for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
+                    matrix[(i, j)] += stiffness * gradient[i] * gradient[j];
+                }
+                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                    let second = 2. * t.sign * t.coefficients[a] * t.coefficients[b];
+                    let at = |axis| (3 * t.beads[a] + axis, 3 * t.beads[b] + axis);
+                    (0..3).for_each(|axis| matrix[at(axis)] -= z * second);
+                }
+                matrix[(n + t.component, n + t.component)] -= 2. * z * t.h[1];
+            }
+            matrix
+        }
+
+        /// The way down the barrier function.
+        fn downhill(&self) -> Vec<f64> {
+            let mut downhill = vec![0.; 3 * self.rope.curve.n()];
+            downhill.extend(self.rope.curve.ranges().map(|range| -(range.len() as f64)));
+            for t in self.around.terms.iter() {
+                let force = BARRIER.mu * BARRIER.weight(t)[0] / t.g;
+                downhill.iter_mut().zip(self.gradient(t)).for_each(|(sum, g)| *sum += force * g);
+            }
+            downhill
+        }
+
+        fn gradient(&self, t: &Term) -> Vec<f64> {
+            let mut gradient = vec![0.; self.size()];
             for (i, part) in t.gradient() {
                 (0..3).for_each(|axis| gradient[3 * i + axis] += part[axis]);
             }
-            gradient[n + t.component] += t.h[0];
-            for i in 0..size {
-                rhs[i] += BARRIER.mu * w / t.g * gradient[i];
-                (0..size).for_each(|j| matrix[(i, j)] += stiffness * gradient[i] * gradient[j]);
-            }
-            for (a, ca) in t.beads.into_iter().zip(t.coefficients) {
-                for (b, cb) in t.beads.into_iter().zip(t.coefficients) {
-                    (0..3)
-                        .for_each(|x| matrix[(3 * a + x, 3 * b + x)] -= 2. * z * t.sign * ca * cb);
-                }
-            }
-            matrix[(n + t.component, n + t.component)] -= 2. * z * t.h[1];
+            gradient[3 * self.rope.curve.n() + t.component] += t.h[0];
+            gradient
         }
-        (matrix, rhs)
+
+        fn size(&self) -> usize {
+            3 * self.rope.curve.n() + self.rope.l.len()
+        }
+
+        fn assert_solved(&self, step: &Step, shift: f64) {
+            let (matrix, rhs) = (self.matrix(shift), self.downhill());
+            let beads = step.to.beads.iter().flat_map(DVec3::to_array);
+            let x: Vec<_> = beads.chain(step.to.lengths.iter().copied()).collect();
+            let norm = rhs.iter().fold(0f64, |most, b| most.max(b.abs()));
+            for (i, b) in rhs.iter().enumerate() {
+                let row: f64 = x.iter().enumerate().map(|(j, x)| matrix[(i, j)] * x).sum();
+                assert!((row - b).abs() < 1e-8 * norm, "row {i} gives {row}, not {b}");
+            }
+            let slope = -rhs.iter().zip(&x).map(|(b, x)| b * x).sum::<f64>();
+            assert!(slope < 0. && (slope - step.slope).abs() < 1e-9 * slope.abs());
+        }
+    }
+
+    /// Pairs within the barrier's range, each of two tangles in a row.
+    fn close_pairs(rope: &Unknowns) -> Vec<Pair> {
+        let n = rope.curve.n() as u32;
+        let are_close = |&(i, j): &Pair| {
+            let [c, d] = [i, j].map(|i| rope.curve.component_of(i as usize));
+            d == c + 1 && rope.contact((i, j)).g < BARRIER.hat
+        };
+        (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).filter(are_close).collect()
     }
 
     fn is_definite(matrix: &Mat<f64>) -> bool {
@@ -181,61 +235,22 @@ mod tests {
         let mut newton = Newton::default();
         let (mut at_once, mut by_blocks, mut by_lengths) = (0, 0, 0);
         for round in 0..60 {
-            let curve = tangles(&mut random);
-            let n = curve.n() as u32;
-            let pairs: Vec<_> = (0..n)
-                .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
-                .filter(|&(i, j)| {
-                    let [c, d] = [i, j].map(|i| curve.component_of(i as usize));
-                    d == c + 1 && Term::contact(curve.vertices(), (i, j)).g < BARRIER.hat
-                })
-                .collect();
-            // Some come and some go, so that the pattern has idle pairs, or is too small.
-            let (near, far): (Vec<_>, Vec<_>) =
-                pairs.iter().copied().partition(|_| random.random_bool(0.7));
-            // Bends near their limit make the edge lengths' part indefinite, contacts that press hard
-            // the vertices'.
-            let slack = [3., 1.02][round % 2];
-            let hard = [1e-6, 0.1, 30.][round % 3];
-            let l: Vec<_> =
-                curve.ranges().map(|range| slack * shortest(&curve.vertices()[range])).collect();
-            let rope = Unknowns { curve, l };
-            let terms = rope.terms(&near);
-            assert!(terms.contacts.len() > 20 && terms.iter().all(|t| t.g > 0.));
-            let mut z = terms.map(|t| if t.sign > 0. { hard } else { 1. });
-            z.iter_mut().for_each(|z| *z *= 10f64.powf(random.random_range(-1.0..1.)));
-
+            let case = Case::new(round, &mut random);
             newton.shift = 0.;
             let before = newton.factorisations();
-            let step = newton.step(&rope, &terms, &z, &far, BARRIER).unwrap();
-            let Unknowns { curve, l } = &rope;
-            let shifts = |shift: f64| [(shift + LEAST_SHIFT) / l[0], shift / l[0]];
-            let (matrix, rhs) = dense(curve, &terms, &z, shifts(newton.shift));
-            let x: Vec<_> =
-                step.to.beads.iter().flat_map(DVec3::to_array).chain(step.to.lengths).collect();
-            let norm = rhs.iter().fold(0f64, |most, b| most.max(b.abs()));
-            for (i, b) in rhs.iter().enumerate() {
-                let row: f64 = x.iter().enumerate().map(|(j, x)| matrix[(i, j)] * x).sum();
-                assert!((row - b).abs() < 1e-8 * norm, "{round}: row {i} gives {row}, not {b}");
-            }
-            let slope = -rhs.iter().zip(&x).map(|(b, x)| b * x).sum::<f64>();
-            assert!(slope < 0. && (slope - step.slope).abs() < 1e-9 * slope.abs());
-
+            let step = newton.step(&case.rope, &case.around, &case.z, BARRIER).unwrap();
+            case.assert_solved(&step, newton.shift);
             // The shift is 0 if that will do, else the first of its row that does.
-            assert!(is_definite(&matrix));
+            assert!(is_definite(&case.matrix(newton.shift)));
             if newton.factorisations() == before + 1 {
                 at_once += 1;
-            } else {
-                let less = if newton.shift > FIRST_SHIFT { 0.25 * newton.shift } else { 0. };
-                let (matrix, _) = dense(curve, &terms, &z, shifts(less));
-                assert!(!is_definite(&matrix));
-                let blocks = Mat::from_fn(3 * curve.n(), 3 * curve.n(), |i, j| matrix[(i, j)]);
-                if is_definite(&blocks) {
-                    by_lengths += 1;
-                } else {
-                    by_blocks += 1;
-                }
+                continue;
             }
+            let less = if newton.shift > FIRST_SHIFT { 0.25 * newton.shift } else { 0. };
+            let (matrix, n) = (case.matrix(less), 3 * case.rope.curve.n());
+            assert!(!is_definite(&matrix));
+            let on_beads = Mat::from_fn(n, n, |i, j| matrix[(i, j)]);
+            *if is_definite(&on_beads) { &mut by_lengths } else { &mut by_blocks } += 1;
         }
         let times = [at_once, by_blocks, by_lengths];
         assert!(times.iter().all(|&times| times >= 5), "{times:?}");

@@ -125,6 +125,13 @@ impl Unknowns {
     }
 }
 
+/// What a step of a rope has to look at.
+pub struct Surroundings {
+    pub terms: Terms,
+    /// Pairs beyond the range of the barrier that a step might yet bring together, sorted.
+    pub bystanders: Vec<Pair>,
+}
+
 /// grad f - sum `z` grad g: what is left over of the forces on each bead and each edge length.
 pub fn left_over(curve: &Curve, terms: &Terms, z: &Multipliers) -> Direction {
     let mut left = Direction::lengthening(curve, 1.);

@@ -1,17 +1,10 @@
 //! What is near what: the contacts, and the pairs that may become some.
 
 use super::Polish;
-use super::problem::Terms;
+use super::problem::Surroundings;
 use crate::beads::least_index_distance;
 use crate::geometry::neighbours::{Pair, close_pairs};
 use crate::geometry::separation::Separation;
-
-/// What a step has to look at.
-pub struct Surroundings {
-    pub terms: Terms,
-    /// Pairs beyond the range of the barrier that a step might yet bring together, sorted.
-    pub bystanders: Vec<Pair>,
-}
 
 impl Polish {
     /// Brings the contacts up to date; one that is new gets the multiplier that the barrier asks for.

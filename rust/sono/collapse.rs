@@ -18,7 +18,8 @@ use crate::outcome::Outcome;
 use crate::resample::scaled;
 use crate::sono::rope::Violation;
 use crate::sono::settings::Settings;
-use crate::sono::tighten::{Stage, Status, Tightener};
+use crate::sono::stage::Stage;
+use crate::sono::tighten::{Status, Tightener};
 
 /// Beads of a rope in the curve as it is, and of one in a loosened curve.
 const AS_IT_IS: usize = 1200;

@@ -35,21 +35,18 @@
 
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
-use crate::error::Result;
 use crate::geometry::curve::Curve;
 use crate::measures::{Measures, measure};
 use crate::outcome::Outcome;
-use crate::resample::{refine, resampled, rope_curve, scaled};
+use crate::resample::{refine, scaled};
 use crate::sono::rope::{Rope, Violation};
 use crate::sono::settings::Settings;
+use crate::sono::stage::Stage;
 
 /// Tolerance while collapsing, while the jammed rope is then eased, and at the end of the anneal.
-const COLLAPSED: f64 = 0.3;
+pub const COLLAPSED: f64 = 0.3;
 const EASED: f64 = 0.03;
 const ANNEALED: f64 = 3e-3;
 /// Share of its length that a collapsing rope loses in a sweep.
@@ -66,27 +63,11 @@ const TOO_FINE: f64 = 0.35;
 const LOOSE: f64 = 0.5;
 /// Sweeps in which a jammed rope is eased.
 const EASE_SWEEPS: u64 = 1000;
-/// Largest random displacement of a coordinate. It breaks symmetries, which SONO alone would keep,
-/// and shakes beads out of each other's grooves.
-const JITTER: f64 = 0.05;
-/// Sweeps between two looks at what the rope measures.
+/// Sweeps between two looks at what the rope measures, at its slack while it collapses, and at the
+/// tension of several components.
 const BURST: u64 = 1000;
-
-/// Which part of the tightening a [`Tightener`] does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stage {
-    /// From any embedded curve to one that holds a thick rope: [`crate::Loosening`].
-    Loosen,
-    /// From a loose to a jammed rope.
-    Collapse,
-    /// Lowers the tolerance from large to small.
-    Anneal,
-    /// The same on a refined rope, from a smaller tolerance on.
-    Reanneal,
-    /// Ends with dispersion and overlaps below the final tolerance.
-    Settle,
-}
+const SLACK_SWEEPS: u64 = 100;
+const TENSION_SWEEPS: u64 = 10;
 
 /// Where a [`Tightener`] stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,58 +116,16 @@ pub struct Tightener {
 }
 
 impl Tightener {
-    /// Collapses an embedded curve of any scale that holds a rope of at most `most` beads; their
-    /// number is chosen by itself. See [`crate::Collapse`] for any other.
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::SelfCrossing`], [`Error::TooThin`].
-    pub fn collapse(curve: &Curve, most: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let mut rope = Rope::new(rope_curve(curve, most)?);
-        jitter(&mut rope, settings.seed);
-        Ok(Self::new(rope, Stage::Collapse, u64::MAX, COLLAPSED, settings))
-    }
-
-    /// Anneals a rope on `n` vertices in all; `curve` must be one: see [`Tightener::collapse`].
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let mut rope = Rope::of(resampled(curve, n, settings.seed)?);
-        jitter(&mut rope, settings.seed);
-        let planned = settings.anneal_sweeps.into();
-        Ok(Self::new(rope, Stage::Anneal, planned, settings.anneal_tolerance, settings))
-    }
-
-    /// Anneals a rope that has been annealed on fewer vertices.
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn reanneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let mut rope = Rope::of(resampled(curve, n, settings.seed)?);
-        jitter(&mut rope, settings.seed);
-        let planned = u64::from(settings.anneal_sweeps.div_ceil(2));
-        let tolerance = settings.anneal_tolerance / 6.;
-        Ok(Self::new(rope, Stage::Reanneal, planned, tolerance, settings))
-    }
-
-    /// Settles a rope on `n` vertices in all, starting at a tolerance of a coarser one's roughness.
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn settle(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let rope = Rope::of(resampled(curve, n, settings.seed)?);
-        let tolerance = 0.3 * rope.dl().min(1.).powi(2);
-        let planned = n as u64 * u64::from(settings.settle_sweeps);
-        Ok(Self::new(rope, Stage::Settle, planned, tolerance, settings))
-    }
-
-    fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
+    /// One stage on a rope, of so many sweeps in which the tolerance falls from this one.
+    pub(super) fn new(
+        rope: Rope,
+        stage: Stage,
+        planned: u64,
+        tolerance: f64,
+        settings: Settings,
+    ) -> Self {
         let rank = (true, true, f64::MAX);
-        let best = Best { curve: scaled(rope.curve(), measure(rope.curve()).r_s), rank };
+        let best = Best { curve: of_radius_one(&rope), rank };
         let mut tightener = Self {
             settings,
             stage,
@@ -227,9 +166,22 @@ impl Tightener {
 
     /// One sweep, and what follows from it.
     pub fn step(&mut self) -> Outcome {
-        if self.outcome != Outcome::Running {
-            return self.outcome;
+        if self.outcome == Outcome::Running {
+            self.sweep();
+            if self.sweeps.is_multiple_of(TENSION_SWEEPS) && self.rope.curve().components() > 1 {
+                self.rope.share_tension();
+            }
+            if self.is_collapsing() && self.sweeps.is_multiple_of(SLACK_SWEEPS) {
+                self.take_in_slack();
+            }
+            if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
+                self.look();
+            }
         }
+        self.outcome
+    }
+
+    fn sweep(&mut self) {
         let tolerance = self.tolerance();
         let Settings { c_1, c_2, .. } = self.settings;
         match self.rope.sweep(c_1, c_2, 0.5 * tolerance) {
@@ -240,22 +192,16 @@ impl Tightener {
             None => self.undone += 1,
         }
         self.sweeps += 1;
-        if self.sweeps.is_multiple_of(10) && self.rope.curve().components() > 1 {
-            self.rope.share_tension();
+    }
+
+    /// Looks at what the rope measures, and whether the stage is done.
+    fn look(&mut self) {
+        self.undone += u64::from(!self.rope.confirm());
+        let valid = self.keep_best();
+        self.outcome = self.judge(valid);
+        if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
+            self.best.curve = of_radius_one(&self.rope);
         }
-        if self.collapsing() && self.sweeps.is_multiple_of(100) {
-            self.take_in_slack();
-        }
-        if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
-            self.undone += u64::from(!self.rope.confirm());
-            let valid = self.keep_best();
-            self.outcome = self.judge(valid);
-            if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
-                let curve = self.rope.curve();
-                self.best.curve = scaled(curve, measure(curve).r_s);
-            }
-        }
-        self.outcome
     }
 
     fn shrink_on_no_overlaps(&mut self, tolerance: f64) {
@@ -277,7 +223,7 @@ impl Tightener {
     fn tolerance(&self) -> f64 {
         let last = match self.stage {
             Stage::Loosen | Stage::Collapse => {
-                return if self.collapsing() { COLLAPSED } else { EASED };
+                return if self.is_collapsing() { COLLAPSED } else { EASED };
             }
             Stage::Anneal | Stage::Reanneal => ANNEALED.min(self.first_tolerance),
             Stage::Settle => 0.5 * self.settings.tolerance,
@@ -286,7 +232,7 @@ impl Tightener {
     }
 
     /// Whether the rope still has to jam; then it is eased, and the end of that is planned.
-    fn collapsing(&self) -> bool {
+    fn is_collapsing(&self) -> bool {
         self.stage == Stage::Collapse && self.planned == u64::MAX
     }
 
@@ -362,11 +308,7 @@ impl Tightener {
     }
 }
 
-/// Displaces each bead at random.
-fn jitter(rope: &mut Rope, seed: u64) {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    // On a fine rope more than a share of dl would tie knots into neighbouring edges.
-    let size = JITTER.min(0.15 * rope.dl());
-    let mut coordinate = || rng.random_range(-size..size);
-    rope.displace(|| DVec3::new(coordinate(), coordinate(), coordinate()));
+/// The shape of a rope, its R_s = 1, its centre at the origin.
+fn of_radius_one(rope: &Rope) -> Curve {
+    scaled(rope.curve(), measure(rope.curve()).r_s)
 }
