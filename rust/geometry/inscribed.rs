@@ -15,6 +15,18 @@ use crate::geometry::curve::{Curve, turning_angle};
 use crate::geometry::sticks::Sticks;
 
 /// The inscribed knot of a curve, all components.
+///
+/// ```
+/// // That of a square of side 2 is its incircle.
+/// use glam::DVec3;
+/// use sono::geometry::inscribed::Inscribed;
+/// let square = [(1., 1.), (-1., 1.), (-1., -1.), (1., -1.)].map(|(x, y)| DVec3::new(x, y, 0.));
+/// let inscribed = Inscribed::new(&sono::Curve::new(vec![square.to_vec()])?);
+/// assert!((inscribed.lengths().sum::<f64>() - std::f64::consts::TAU).abs() < 1e-14);
+/// let (circle, _) = inscribed.sample(&[100], 0.);
+/// assert!(circle.vertices().iter().all(|v| (v.length() - 1.).abs() < 1e-14));
+/// # Ok::<(), sono::Error>(())
+/// ```
 pub struct Inscribed {
     components: Vec<Vec<Piece>>,
 }

@@ -15,6 +15,16 @@ use crate::geometry::curve::Curve;
 use crate::geometry::segments;
 
 /// Vertices in slots, linked to rings; what is removed leaves its slot empty.
+///
+/// ```
+/// use glam::DVec3;
+/// use sono::geometry::sticks::Sticks;
+/// let square = [(0., 0.), (1., 0.), (1., 1.), (0., 1.)].map(|(x, y)| DVec3::new(x, y, x * y));
+/// let mut sticks = Sticks::new(&sono::Curve::new(vec![square.to_vec()])?);
+/// assert!(sticks.remove(0));
+/// assert!(!sticks.remove(1), "a triangle is as simple as a component gets");
+/// # Ok::<(), sono::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Sticks {
     points: Vec<DVec3>,

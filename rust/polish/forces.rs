@@ -54,6 +54,15 @@ impl Forces {
 /// are equal), so a rope that is tight to fewer digits has a large residual. That is the
 /// largest coordinate of what is left over on a bead, in units of the tension: 0 for a critical point
 /// of length.
+///
+/// ```
+/// // A polygon of edges that pull on each other with nothing to press against is out of balance.
+/// use glam::DVec3;
+/// let corners = [(0., 0.), (9., 0.), (9., 5.), (0., 5.)].map(|(x, y)| DVec3::new(x, y, 0.));
+/// let forces = sono::polish::balance(&sono::Curve::new(vec![corners.to_vec()])?);
+/// assert!(forces.residual > 0.1);
+/// # Ok::<(), sono::Error>(())
+/// ```
 pub fn balance(curve: &Curve) -> Forces {
     let mut curve = curve.clone();
     curve.scale(1. / measure(&curve).r_s);

@@ -30,6 +30,20 @@ const A_CROSSING: f64 = 12.;
 const A_COMPONENT: f64 = 30.;
 
 /// Collapses a curve; everything needed to go on later is serialised with it.
+///
+/// ```
+/// // A flat triangle with a spike; its knot type is that of the circle, 2 pi radii long.
+/// use std::time::Duration;
+/// use glam::DVec3;
+/// use sono::{Collapse, Curve, Outcome, Settings};
+/// let corners = [(0., 0.), (9., 0.), (9.01, 50.), (9.02, 0.), (10., -5.)];
+/// let spike = corners.map(|(x, y)| DVec3::new(x, y, 0.));
+/// let curve = Curve::new(vec![spike.to_vec()])?;
+/// let mut collapse = Collapse::new(&curve, false, Settings::default())?;
+/// while collapse.advance(Duration::from_secs(1))?.outcome == Outcome::Running {}
+/// assert!(collapse.status().best.l_p < 7.);
+/// # Ok::<(), sono::Error>(())
+/// ```
 #[derive(Serialize, Deserialize)]
 pub struct Collapse {
     settings: Settings,
@@ -47,7 +61,7 @@ pub struct Collapse {
 }
 
 impl Collapse {
-    /// Collapses any embedded curve of any scale; the number of vertices is chosen by itself. A curve
+    /// Collapses any embedded curve, in any unit; the number of vertices is chosen by itself. A curve
     /// that was loosened before is not loosened again.
     ///
     /// # Errors

@@ -50,6 +50,20 @@ impl Violation {
 }
 
 /// A rope of radius 1 on a closed curve.
+///
+/// ```
+/// use glam::DVec3;
+/// use sono::sono::rope::Rope;
+/// let angle = |i: usize| std::f64::consts::TAU * i as f64 / 60.;
+/// let ring = (0..60).map(|i| DVec3::new(3. * angle(i).cos(), 2. * angle(i).sin(), 0.));
+/// let mut rope = Rope::new(sono::Curve::new(vec![ring.collect()])?);
+/// let before = rope.length();
+/// rope.stretch(0.99);
+/// // The edges are still too long, by what they were unequal and a hundredth.
+/// assert!(rope.sweep(0.5, 0.5, 0.).expect("no strand passes").dispersion > 0.01);
+/// assert!(rope.length() < before);
+/// # Ok::<(), sono::Error>(())
+/// ```
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Rope {
     curve: Curve,

@@ -40,7 +40,8 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::curve::Curve;
 use crate::measures::{Measures, measure};
 use crate::outcome::Outcome;
-use crate::resample::{refine, scaled};
+use crate::resample::refine;
+use crate::sono::best::Best;
 use crate::sono::rope::{Rope, Violation};
 use crate::sono::settings::Settings;
 use crate::sono::stage::Stage;
@@ -90,14 +91,6 @@ pub struct Status {
     pub best: Measures,
 }
 
-/// The best state so far: valid ones before others, then the shorter bound L_c.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Best {
-    curve: Curve,
-    /// Whether it is not valid, whether it has no L_c, and L_c, or else L_p.
-    rank: (bool, bool, f64),
-}
-
 /// Tightens a rope, stage by stage; everything needed to go on later is serialised with it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Tightener {
@@ -124,11 +117,10 @@ impl Tightener {
         tolerance: f64,
         settings: Settings,
     ) -> Self {
-        let rank = (true, true, f64::MAX);
-        let best = Best { curve: of_radius_one(&rope), rank };
         let mut tightener = Self {
             settings,
             stage,
+            best: Best::new(rope.curve()),
             rope,
             sweeps: 0,
             planned,
@@ -136,10 +128,9 @@ impl Tightener {
             undone: 0,
             met: Violation::default(),
             outcome: Outcome::Running,
-            best,
             length: f64::MAX,
         };
-        tightener.keep_best();
+        tightener.best.offer(tightener.rope.curve(), settings.tolerance);
         tightener
     }
 
@@ -147,7 +138,7 @@ impl Tightener {
     pub fn is_sound(&self) -> bool {
         self.settings.check().is_ok()
             && self.rope.is_sound()
-            && self.best.curve.is_sound()
+            && self.best.curve().is_sound()
             && self.planned > 0
             && self.first_tolerance > 0.
             && self.first_tolerance.is_finite()
@@ -197,10 +188,10 @@ impl Tightener {
     /// Looks at what the rope measures, and whether the stage is done.
     fn look(&mut self) {
         self.undone += u64::from(!self.rope.confirm());
-        let valid = self.keep_best();
+        let valid = self.best.offer(self.rope.curve(), self.settings.tolerance);
         self.outcome = self.judge(valid);
         if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
-            self.best.curve = of_radius_one(&self.rope);
+            self.best.replace(self.rope.curve());
         }
     }
 
@@ -275,22 +266,9 @@ impl Tightener {
         }
     }
 
-    /// Remembers the rope as it is if it is better than what was; returns whether it is valid.
-    fn keep_best(&mut self) -> bool {
-        let now = measure(self.rope.curve());
-        let overlap = 2. * (1. - now.r_s);
-        let valid = now.dispersion.max(overlap) <= self.settings.tolerance;
-        // Without the bound L_c a rope is so coarse or rough that any with one is better.
-        let rank = (!valid, now.l_c.is_none(), now.l_c.unwrap_or(now.l_p));
-        if rank.2.is_finite() && rank < self.best.rank {
-            self.best = Best { curve: scaled(self.rope.curve(), now.r_s), rank };
-        }
-        valid
-    }
-
     /// The best state so far, its R_s = 1, its centre at the origin.
     pub fn best(&self) -> &Curve {
-        &self.best.curve
+        self.best.curve()
     }
 
     /// Where it stands.
@@ -303,12 +281,7 @@ impl Tightener {
             undone: self.undone,
             epsilon: 0.5 * self.tolerance(),
             met: self.met,
-            best: measure(&self.best.curve),
+            best: measure(self.best()),
         }
     }
-}
-
-/// The shape of a rope, its R_s = 1, its centre at the origin.
-fn of_radius_one(rope: &Rope) -> Curve {
-    scaled(rope.curve(), measure(rope.curve()).r_s)
 }
