@@ -9,7 +9,7 @@ use crate::geometry::curve::Curve;
 use crate::geometry::embedded::check_embedded;
 use crate::geometry::inscribed::Inscribed;
 use crate::geometry::sticks::Sticks;
-use crate::measures::measure;
+use crate::measures::{Measures, measure};
 
 /// Edge length of a loose rope, as a multiple of its radius.
 const LOOSE_EDGE: f64 = 0.5;
@@ -56,20 +56,7 @@ pub fn rope_curve(curve: &Curve, most: usize) -> Result<Curve> {
 pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Curve> {
     let shift = Pcg64Mcg::seed_from_u64(seed).random();
     let given = measure(curve);
-    let on = |n: usize| {
-        let (mut rope, r_s);
-        if curve.n() == n {
-            (rope, r_s) = (curve.clone(), given.r_s);
-        } else if given.l_p / (n as f64) < LONGEST_CHORD {
-            rope = refine(curve, n, shift)?;
-            r_s = measure(&rope).r_s;
-        } else {
-            (rope, r_s) = (coarsen(curve, n, shift)?, given.r_s);
-        }
-        rope.scale(1. / r_s);
-        Ok(rope)
-    };
-    let rope = on(n)?;
+    let rope = rope_on(curve, &given, n, shift)?;
     let dl = longest_mean_edge(&rope);
     if dl < LONGEST_EDGE {
         return Ok(rope);
@@ -77,9 +64,24 @@ pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Curve> {
     let (mut needed, mut longest) = (n, dl);
     while longest >= LONGEST_EDGE {
         needed = (needed + 1).max((needed as f64 * longest / LONGEST_EDGE) as usize);
-        longest = longest_mean_edge(&on(needed)?);
+        longest = longest_mean_edge(&rope_on(curve, &given, needed, shift)?);
     }
     Err(Error::TooCoarse { n, dl, limit: LONGEST_EDGE, needed })
+}
+
+/// The same for a curve that measures what is `given`, however long the edges get.
+fn rope_on(curve: &Curve, given: &Measures, n: usize, shift: f64) -> Result<Curve> {
+    let (mut rope, r_s) = if curve.n() == n {
+        (curve.clone(), given.r_s)
+    } else if given.l_p / (n as f64) < LONGEST_CHORD {
+        let refined = refine(curve, n, shift)?;
+        let r_s = measure(&refined).r_s;
+        (refined, r_s)
+    } else {
+        (coarsen(curve, n, shift)?, given.r_s)
+    };
+    rope.scale(1. / r_s);
+    Ok(rope)
 }
 
 /// The mean edge length of that component where it is largest.
@@ -87,7 +89,17 @@ fn longest_mean_edge(curve: &Curve) -> f64 {
     curve.mean_edges().fold(0., f64::max)
 }
 
-/// K_P sampled with `n` vertices in all at equal chords: how a tight rope is refined or coarsened.
+/// K_P sampled with `n` vertices in all at equal chords, in the curve's own unit, the first vertex
+/// `shift` edges after the start: how a tight rope is refined or coarsened.
+///
+/// ```
+/// use glam::DVec3;
+/// let square = [(1., 1.), (-1., 1.), (-1., -1.), (1., -1.)].map(|(x, y)| DVec3::new(x, y, 0.));
+/// let circle = sono::refine(&sono::Curve::new(vec![square.to_vec()])?, 100, 0.)?;
+/// assert_eq!(circle.n(), 100);
+/// assert!(sono::measure(&circle).dispersion < 1e-12);
+/// # Ok::<(), sono::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::TooFew`].

@@ -1,13 +1,13 @@
 //! The polish: a primal-dual interior-point method on the bead rope.
 //!
 //! SONO converges linearly; a tight rope solves a sparse smooth optimisation problem
-//! ([`problem`]), and Newton's method reaches the exact state in some tens of factorisations. Every
+//! (`problem`), and Newton's method reaches the exact state in some tens of factorisations. Every
 //! iterate is a valid rope: constraints hold strictly along each step, so that no strand passes
 //! another (see [`crate::sono::passage`]), and stopping early loses nothing.
 //!
 //! With multipliers z the perturbed conditions are grad f = sum z grad g and z g = mu w(g), w = 1
 //! for the logarithmic barrier and w = (1 - g/hat)^2 for the contacts' clamped one. An iteration is
-//! one Newton step on both ([`newton`]); when their error has fallen below 10 mu, mu falls, in the
+//! one Newton step on both (`newton`); when their error has fallen below 10 mu, mu falls, in the
 //! end to 1e-11. Lengths then exceed the local minimum by about (number of constraints) mu.
 //!
 //! The multipliers are forces: with f the rope's length, its tension is 1 on average.

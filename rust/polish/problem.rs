@@ -58,10 +58,12 @@ impl<T> Grouped<T> {
     }
 }
 
-/// The unknowns: vertices, and the required edge length of each component.
+/// The unknowns: where a rope is, and how long its edges are required to be.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Unknowns {
+    /// The vertices.
     pub curve: Curve,
+    /// The edge length of each component.
     pub l: Vec<f64>,
 }
 

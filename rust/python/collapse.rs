@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
 use super::engine::{budget, restored, settings_from_json, state};
-use super::errors::{released, to_python};
+use super::errors::{released, tried};
 use super::tightener::Status;
 
 /// From any embedded curve to a jammed rope; a thin one is loosened first, unless it was before.
@@ -22,15 +22,13 @@ impl Collapse {
     ) -> PyResult<Self> {
         let curve = curve(components)?;
         let settings = settings_from_json(settings)?;
-        released(py, || crate::Collapse::new(&curve, loosened, settings))?
-            .map(Self)
-            .map_err(to_python)
+        tried(py, || crate::Collapse::new(&curve, loosened, settings)).map(Self)
     }
 
     /// Works for about so many seconds, unless done before, with the interpreter released.
     fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
         let budget = budget(seconds)?;
-        let status = released(py, || self.0.advance(budget))?.map_err(to_python)?;
+        let status = tried(py, || self.0.advance(budget))?;
         Status::new(py, &status)
     }
 

@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::errors::{released, to_python};
+use super::errors::{to_python, tried};
 use crate::{Curve, Result};
 
 /// A curve that comes from Python.
@@ -61,6 +61,6 @@ fn changed<'py>(
     change: impl FnOnce(&Curve) -> Result<Curve> + Send,
 ) -> PyResult<Arrays<'py>> {
     let curve = curve(components)?;
-    let changed = released(py, || change(&curve))?.map_err(to_python)?;
+    let changed = tried(py, || change(&curve))?;
     arrays(py, &changed)
 }

@@ -33,6 +33,14 @@ pub fn released<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyR
     })
 }
 
+/// The same where the core may refuse what it is given.
+pub fn tried<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce() -> crate::Result<T> + Send,
+) -> PyResult<T> {
+    released(py, work)?.map_err(to_python)
+}
+
 /// The exception that an error of the core becomes.
 pub fn to_python(error: Error) -> PyErr {
     if let Error::Setting { .. } = error {

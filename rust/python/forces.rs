@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 use super::curve::{Given, curve};
-use super::errors::{released, to_python};
+use super::errors::tried;
 use crate::check_embedded;
 use crate::polish::Forces;
 
@@ -31,7 +31,6 @@ pub fn force_arrays(py: Python<'_>, forces: Forces) -> PyResult<ForceArrays<'_>>
 #[pyfunction]
 pub fn balance<'py>(py: Python<'py>, components: Given<'py>) -> PyResult<ForceArrays<'py>> {
     let curve = curve(components)?;
-    let forces = released(py, || check_embedded(&curve).map(|()| crate::polish::balance(&curve)))?
-        .map_err(to_python)?;
+    let forces = tried(py, || check_embedded(&curve).map(|()| crate::polish::balance(&curve)))?;
     force_arrays(py, forces)
 }

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 
 use super::curve::{Given, curve};
-use super::errors::{released, to_python};
+use super::errors::tried;
 use crate::check_embedded;
 
 /// What a curve measures, in its own unit; L_p, L_c and L_a are ropelengths, lengths over the radius.
@@ -67,6 +67,5 @@ impl From<crate::Measures> for Measures {
 #[pyfunction]
 pub fn measure(py: Python<'_>, components: Given<'_>) -> PyResult<Measures> {
     let curve = curve(components)?;
-    released(py, || check_embedded(&curve).map(|()| crate::measure(&curve).into()))?
-        .map_err(to_python)
+    tried(py, || check_embedded(&curve).map(|()| crate::measure(&curve).into()))
 }

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
 use super::engine::{budget, name_of, restored, state};
-use super::errors::{released, to_python};
+use super::errors::{released, tried};
 use super::forces::{ForceArrays, force_arrays};
 use super::measures::Measures;
 
@@ -53,7 +53,7 @@ impl Polish {
         seed: u64,
     ) -> PyResult<Self> {
         let curve = curve(components)?;
-        released(py, || crate::Polish::new(&curve, n, passing, seed))?.map(Self).map_err(to_python)
+        tried(py, || crate::Polish::new(&curve, n, passing, seed)).map(Self)
     }
 
     /// Works for about so many seconds, unless done before, with the interpreter released.

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
 use super::engine::{budget, name_of, restored, settings_from_json, state};
-use super::errors::{released, to_python};
+use super::errors::{released, tried};
 use super::measures::Measures;
 use crate::{Curve, Settings, Stage};
 
@@ -71,7 +71,7 @@ impl Tightener {
                 return Err(PyValueError::new_err(message));
             }
         };
-        released(py, || begin(&curve, n, settings))?.map(Self).map_err(to_python)
+        tried(py, || begin(&curve, n, settings)).map(Self)
     }
 
     /// Works for about so many seconds, unless done before, with the interpreter released.
