@@ -115,5 +115,5 @@ pub enum Error {
     },
 }
 
-/// A [`std::result::Result`] with this crate's [`Error`].
+/// A [`std::result::Result`] with this crate's [`enum@Error`].
 pub type Result<T> = std::result::Result<T, Error>;

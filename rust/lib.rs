@@ -1,38 +1,33 @@
 //! The core of sono: tight knots on the bead rope.
 //!
 //! **Curve -> measures** is one road, **curve -> loose curve -> rope -> sweeps of SONO -> Newton steps of
-//! the polish -> tight curve** the other. Dependencies point one way only:
-//! `error, segments, curve <- neighbours, sticks <- measures, projection <- inscribed, embedded, procedures,
-//! passage <- rope, loosen <- tighten <- collapse, polish <- python`; `modular` stands alone.
+//! the polish -> tight curve** the other. The radius of a rope is R = 1, and ropelength is length over
+//! radius. Dependencies point one way only:
+//! `error <- geometry <- measures, invariants, beads, outcome <- resample, loosening <- sono, polish <- python`.
+//! `sono` and `polish` do not know each other; only `python` knows of Python.
 
-pub mod collapse;
-pub mod curve;
-pub mod embedded;
+pub mod beads;
 pub mod error;
-pub mod inscribed;
-pub mod loosen;
+pub mod geometry;
+pub mod invariants;
+pub mod loosening;
 pub mod measures;
-pub mod modular;
-pub mod neighbours;
-pub mod passage;
+pub mod outcome;
 pub mod polish;
-pub mod procedures;
-pub mod projection;
 #[cfg(feature = "python")]
 mod python;
-pub mod rope;
-pub mod segments;
-pub mod settings;
-pub mod sticks;
-pub mod tighten;
+pub mod resample;
+pub mod sono;
 
-pub use collapse::Collapse;
-pub use curve::Curve;
-pub use embedded::check_embedded;
 pub use error::{Error, Result};
-pub use inscribed::refine;
-pub use loosen::{Loosening, loosened, simplified};
+pub use geometry::curve::Curve;
+pub use geometry::embedded::check_embedded;
+pub use loosening::{Loosening, loosened, simplified};
 pub use measures::{Measures, measure};
+pub use outcome::Outcome;
 pub use polish::Polish;
-pub use settings::Settings;
-pub use tighten::{Outcome, Stage, Status, Tightener};
+pub use resample::refine;
+pub use sono::collapse::Collapse;
+pub use sono::settings::Settings;
+pub use sono::stage::Stage;
+pub use sono::tighten::{Status, Tightener};

@@ -37,8 +37,9 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use crate::curve::Curve;
-use crate::neighbours::{Separation, closest_distance};
+use crate::geometry::curve::Curve;
+use crate::geometry::neighbours::closest_distance;
+use crate::geometry::separation::Separation;
 
 /// What a curve measures, in the units of its vertices; the ropelengths `l_*` have no unit.
 #[derive(Debug, Clone, Copy, PartialEq)]

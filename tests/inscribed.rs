@@ -6,7 +6,8 @@ use approx::assert_relative_eq;
 use common::torus;
 use glam::DVec3;
 use proptest::prelude::*;
-use sono::inscribed::{Inscribed, rope_curve, share_out};
+use sono::geometry::inscribed::Inscribed;
+use sono::resample::{rope_curve, share_out};
 use sono::{Curve, Error, measure, refine};
 
 proptest! {

@@ -152,7 +152,7 @@ proptest! {
         let m = measure(&curve);
         if let Some(r_c) = m.r_c {
             prop_assert!(r_c <= m.min_rad * (1. + 1e-12));
-            let fine = sono::inscribed::Inscribed::new(&curve);
+            let fine = sono::geometry::inscribed::Inscribed::new(&curve);
             let lengths: Vec<_> = fine.lengths().collect();
             prop_assert!((lengths.iter().sum::<f64>() - m.inscribed_length).abs() < 1e-9 * m.length);
             let (fine, _) = fine.sample(&[1500], 0.);

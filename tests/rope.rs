@@ -6,7 +6,7 @@ use common::{hopf, linking};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sono::rope::Rope;
+use sono::sono::rope::Rope;
 
 #[test]
 fn a_sweep_that_would_pass_a_strand_is_undone() {

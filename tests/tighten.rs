@@ -6,9 +6,8 @@ use std::f64::consts::PI;
 
 use common::{finish, quick, torus};
 use glam::DVec3;
-use sono::procedures::{
-    control_curvature, equalize_edges, least_index_distance, most_bend, remove_overlaps,
-};
+use sono::beads::{least_index_distance, most_bend};
+use sono::sono::procedures::{control_curvature, equalize_edges, remove_overlaps};
 use sono::{Curve, Error, Outcome, Polish, Settings, Tightener, measure};
 
 fn loose() -> Curve {

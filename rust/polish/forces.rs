@@ -2,12 +2,21 @@
 
 use glam::DVec3;
 
-use super::newton::Matrix;
-use super::problem::{Term, chain_terms};
-use crate::curve::Curve;
+use super::least_squares::least_squares;
+use super::problem::{Multipliers, Terms, Unknowns, left_over};
+use super::term::Term;
+use crate::beads::{least_index_distance, most_bend};
+use crate::geometry::curve::Curve;
+use crate::geometry::neighbours::{Pair, close_pairs};
+use crate::geometry::separation::Separation;
 use crate::measures::measure;
-use crate::neighbours::{Separation, for_each_close_pair};
-use crate::procedures::{least_index_distance, most_bend};
+
+/// Two beads may press against each other when at most so far out of touch, R = 1; a bead may
+/// withstand bending when its radius, and an edge be in tension when its length is within this share
+/// of the bound, which for edges is the longest.
+const TOUCHING: f64 = 1e-4;
+const BENT: f64 = 1e-3;
+const SLACK: f64 = 1e-2;
 
 /// The forces in a rope of radius 1, in units of its mean tension.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,38 +32,19 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// The forces that the multipliers `z` of `terms` are: edges, then bends, then contacts.
-    pub(super) fn new(curve: &Curve, terms: &[Term], z: &[f64]) -> Self {
-        let n = curve.n();
-        let mut left = vec![DVec3::ZERO; n];
-        for (t, z) in terms.iter().zip(z) {
-            t.gradient().for_each(|(i, gradient)| left[i] += *z * gradient);
-        }
-        let force = |k: usize| 2. * z[k] * terms[k].y.length();
-        Self {
-            tension: (0..n).map(force).collect(),
-            // At the neighbours, a tension's arm of one edge away.
-            couple: (n..2 * n).map(|k| force(k) * terms[k - n].y.length()).collect(),
-            contacts: (2 * n..terms.len())
-                .map(|k| (terms[k].beads[0], terms[k].beads[1], force(k)))
-                .collect(),
-            residual: left.iter().map(|f| f.abs().max_element()).fold(0., f64::max),
-        }
+    /// The forces that the multipliers `z` of `terms` are.
+    pub(super) fn new(curve: &Curve, terms: &Terms, z: &Multipliers) -> Self {
+        let force = terms.map_with(z, |t, z| 2. * z * t.y.length());
+        // At the neighbours, a tension's arm of one edge away.
+        let arms = terms.edges.iter().map(|edge| edge.y.length());
+        let couple = force.bends.iter().zip(arms).map(|(force, arm)| force * arm).collect();
+        let ends = terms.contacts.iter().map(|t| (t.beads[0], t.beads[1]));
+        let contacts = ends.zip(force.contacts).map(|((i, j), force)| (i, j, force)).collect();
+        let left = left_over(curve, terms, z).beads;
+        let residual = left.iter().map(|f| f.abs().max_element()).fold(0., f64::max);
+        Self { tension: force.edges, couple, contacts, residual }
     }
 }
-
-/// Two beads may press against each other when at most so far out of touch, R = 1; a bead may
-/// withstand bending when its radius, and an edge be in tension when its length is within this share
-/// of the bound, which for edges is the longest.
-const TOUCHING: f64 = 1e-4;
-const BENT: f64 = 1e-3;
-const SLACK: f64 = 1e-2;
-/// Share of the way to the boundary that a step goes, by how much it tries to lower mu, and where
-/// that ends.
-const TO_THE_BOUNDARY: f64 = 0.99;
-const CENTRING: f64 = 0.1;
-const LAST_MU: f64 = 1e-20;
-const MOST_ITERATIONS: usize = 200;
 
 /// The forces that come nearest to balance on a curve as it is, scaled to R_s = 1: tensions,
 /// couples and contact forces are sought by non-negative least squares.
@@ -64,89 +54,40 @@ const MOST_ITERATIONS: usize = 200;
 /// are equal), so a rope that is tight to fewer digits has a large residual. That is the
 /// largest coordinate of what is left over on a bead, in units of the tension: 0 for a critical point
 /// of length.
+///
+/// ```
+/// // A polygon of edges that pull on each other with nothing to press against is out of balance.
+/// use glam::DVec3;
+/// let corners = [(0., 0.), (9., 0.), (9., 5.), (0., 5.)].map(|(x, y)| DVec3::new(x, y, 0.));
+/// let forces = sono::polish::balance(&sono::Curve::new(vec![corners.to_vec()])?);
+/// assert!(forces.residual > 0.1);
+/// # Ok::<(), sono::Error>(())
+/// ```
 pub fn balance(curve: &Curve) -> Forces {
     let mut curve = curve.clone();
     curve.scale(1. / measure(&curve).r_s);
-    let l: Vec<_> =
-        (0..curve.components()).map(|c| curve.edge_lengths(c).fold(0., f64::max)).collect();
-    let mut terms: Vec<_> = chain_terms(&curve, &l).collect();
-    // By arclength, since curves that are no ropes may have thousands of vertices in a little place.
-    let least = l.iter().map(|&l| (least_index_distance(l) as f64 - 0.5) * l).collect();
-    let reach = 2. + TOUCHING;
-    let mut pairs = vec![];
-    for_each_close_pair(&curve, &Separation::by_arclength(&curve, least), reach, |i, j, _| {
-        pairs.push((i as u32, j as u32));
-        reach
-    });
-    pairs.sort_unstable();
-    terms.extend(pairs.iter().map(|&(i, j)| Term::contact(curve.vertices(), i, j)));
-    let n = curve.n();
-    for (k, t) in terms[..2 * n].iter_mut().enumerate() {
-        let l = l[t.component];
-        let least = if k < n { (1. - SLACK) * l } else { (1. - BENT) * most_bend(l) };
-        if t.y.length() < least {
-            // No force: without a gradient its multiplier has no effect.
-            (t.y, t.h) = (DVec3::ZERO, [0.; 2]);
-        }
+    let rope = Unknowns::new(curve);
+    let mut terms = rope.terms(&touching(&rope));
+    for t in &mut terms.edges {
+        relax(t, (1. - SLACK) * rope.l[t.component]);
     }
-    let z = least_squares(&curve, &terms);
-    Forces::new(&curve, &terms, &z)
+    for t in &mut terms.bends {
+        relax(t, (1. - BENT) * most_bend(rope.l[t.component]));
+    }
+    let z = least_squares(&rope.curve, &terms);
+    Forces::new(&rope.curve, &terms, &z)
 }
 
-/// Least squares for sum z grad g = grad f over z >= 0, by an interior-point method.
-///
-/// Solved in the space of the rope: x = M^-1 (grad f - G z), what is left over, is the point of the
-/// cone G^T x <= 0 nearest to grad f, and z are that problem's multipliers. M is 1 on beads and n on
-/// edge lengths. With slacks s = -G^T x and z s = mu a step needs the matrix M + G (Z/S) G^T, which
-/// has the rope's own pattern.
-fn least_squares(curve: &Curve, terms: &[Term]) -> Vec<f64> {
-    let n: Vec<_> = curve.ranges().map(|range| range.len() as f64).collect();
-    let mut matrix = Matrix::default();
-    matrix.analyse(curve, &terms[2 * curve.n()..], std::iter::empty());
-    let transposed = |d: &[DVec3], delta: &[f64]| -> Vec<f64> {
-        terms.iter().map(|t| t.course(d, delta)[0]).collect()
-    };
-    let (mut d, mut delta) = (vec![DVec3::ZERO; curve.n()], vec![0.; n.len()]);
-    let mut z: Vec<_> = terms.iter().map(|t| 0.5 / t.y.length().max(1e-3)).collect();
-    let mut s = vec![1.; terms.len()];
-    let none = vec![0.; terms.len()];
-    for _ in 0..MOST_ITERATIONS {
-        let mean = z.iter().zip(&s).map(|(z, s)| z * s).sum::<f64>() / z.len() as f64;
-        if mean < LAST_MU {
-            break;
-        }
-        let mu = CENTRING * mean;
-        let ratio: Vec<_> = z.iter().zip(&s).map(|(z, s)| z / s).collect();
-        let bordered = matrix.assemble(curve, terms, &ratio, &none);
-        let corner: Vec<_> = bordered.corner.iter().zip(&n).map(|(c, n)| c + n).collect();
-        let along = transposed(&d, &delta);
-        // grad f - M x - G (mu/s + (Z/S)(s + G^T x))
-        let mut step_d: Vec<_> = d.iter().map(|d| -*d).collect();
-        let mut step_delta: Vec<_> = n.iter().zip(&delta).map(|(n, x)| n * (1. - x)).collect();
-        for (k, t) in terms.iter().enumerate() {
-            let force = mu / s[k] + ratio[k] * (s[k] + along[k]);
-            t.gradient().for_each(|(i, gradient)| step_d[i] -= force * gradient);
-            step_delta[t.component] -= force * t.h[0];
-        }
-        if !matrix.factor(&bordered, 1.)
-            || !matrix.solve(&bordered.border, &corner, &mut step_d, &mut step_delta)
-        {
-            break;
-        }
-        let along_step = transposed(&step_d, &step_delta);
-        let ds: Vec<_> = (0..s.len()).map(|k| -(s[k] + along[k]) - along_step[k]).collect();
-        let dz: Vec<_> = (0..s.len()).map(|k| mu / s[k] - z[k] - ratio[k] * ds[k]).collect();
-        let longest =
-            |x: &[f64], dx: &[f64]| {
-                x.iter().zip(dx).fold(1f64, |a, (x, dx)| {
-                    if *dx < 0. { a.min(TO_THE_BOUNDARY * x / -dx) } else { a }
-                })
-            };
-        let a = longest(&z, &dz).min(longest(&s, &ds));
-        d.iter_mut().zip(&step_d).for_each(|(x, dx)| *x += a * *dx);
-        delta.iter_mut().zip(&step_delta).for_each(|(x, dx)| *x += a * dx);
-        z.iter_mut().zip(&dz).for_each(|(x, dx)| *x += a * dx);
-        s.iter_mut().zip(&ds).for_each(|(x, dx)| *x += a * dx);
+/// The pairs of beads that may press against each other.
+fn touching(rope: &Unknowns) -> Vec<Pair> {
+    // By arclength, since curves that are no ropes may have thousands of vertices in a little place.
+    let least = rope.l.iter().map(|&l| (least_index_distance(l) as f64 - 0.5) * l).collect();
+    close_pairs(&rope.curve, &Separation::by_arclength(&rope.curve, least), 2. + TOUCHING)
+}
+
+/// Takes the force from a term whose |y| is less: without a gradient its multiplier has no effect.
+fn relax(t: &mut Term, least: f64) {
+    if t.y.length() < least {
+        (t.y, t.h) = (DVec3::ZERO, [0.; 2]);
     }
-    z
 }

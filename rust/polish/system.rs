@@ -31,13 +31,39 @@ pub fn symmetric(y: DVec3, outer: f64, diagonal: f64) -> Symmetric {
     ]
 }
 
+/// The blocks of a rope's matrix; those below the diagonal are these transposed.
+pub struct Blocks {
+    /// The diagonal.
+    pub beads: Vec<Symmetric>,
+    /// Between each bead and the next.
+    pub neighbours: Vec<Symmetric>,
+    /// Between the two beads beside each.
+    pub seconds: Vec<Symmetric>,
+    /// Between the beads of each pair in contact.
+    pub contacts: Vec<Symmetric>,
+}
+
+impl Blocks {
+    /// Nothing on `n` beads with so many contacts.
+    pub fn zero(n: usize, contacts: usize) -> Self {
+        let [beads, neighbours, seconds, contacts] =
+            [n, n, n, contacts].map(|blocks| vec![[0.; 6]; blocks]);
+        Self { beads, neighbours, seconds, contacts }
+    }
+
+    fn off_diagonal(&self) -> impl Iterator<Item = &Symmetric> {
+        self.neighbours.iter().chain(&self.seconds).chain(&self.contacts)
+    }
+}
+
 /// A sparse symmetric matrix of 3x3 blocks and its Cholesky factor.
 pub struct System {
     /// Which block column a bead has.
     column: Vec<usize>,
-    /// Block column and place in it of each block.
-    places: Vec<(usize, usize)>,
-    symbolic_matrix: SymbolicSparseColMat<usize>,
+    /// Where among the values the three columns of each block begin: the diagonal ones, the others.
+    diagonal: Vec<[usize; 3]>,
+    off_diagonal: Vec<[usize; 3]>,
+    matrix: SymbolicSparseColMat<usize>,
     values: Vec<f64>,
     symbolic: SymbolicCholesky<usize>,
     factor: Vec<f64>,
@@ -45,89 +71,42 @@ pub struct System {
 }
 
 impl System {
-    /// Analyses the pattern of a matrix on `n` beads: its diagonal blocks and those between `pairs`.
+    /// Analyses the pattern of a matrix on `n` beads, whose off-diagonal blocks are between `pairs`.
     pub fn new(n: usize, pairs: &[[usize; 2]]) -> Self {
         let column = minimum_degree(n, pairs);
-        let mut rows: Vec<Vec<usize>> = (0..n).map(|p| vec![p]).collect();
-        let ends = |[a, b]: [usize; 2]| {
-            let (p, q) = (column[a], column[b]);
-            (p.min(q), p.max(q))
+        let ends: Vec<_> = pairs.iter().map(|pair| sorted(pair.map(|i| column[i]))).collect();
+        let rows = sorted_rows((0..n).map(|p| [p, p]).chain(ends.iter().copied()), n);
+        let matrix = upper_triangle(&rows);
+        let starts = matrix.col_ptr();
+        let begin = |[p, q]: [usize; 2]| {
+            let place = rows[q].binary_search(&p).expect("listed above");
+            [0, 1, 2].map(|c| starts[3 * q + c] + 3 * place)
         };
-        for &pair in pairs {
-            let (p, q) = ends(pair);
-            rows[q].push(p);
-        }
-        for rows in &mut rows {
-            rows.sort_unstable();
-            rows.dedup();
-        }
-        let places = (0..n)
-            .map(|i| [i, i])
-            .chain(pairs.iter().copied())
-            .map(|pair| {
-                let (p, q) = ends(pair);
-                (q, rows[q].binary_search(&p).expect("listed above"))
-            })
-            .collect();
-        let mut starts = vec![0];
-        let mut scalar_rows = Vec::new();
-        for (p, rows) in rows.iter().enumerate() {
-            for c in 0..3 {
-                let above = &rows[..rows.len() - 1];
-                scalar_rows.extend(above.iter().flat_map(|q| 3 * q..3 * q + 3));
-                scalar_rows.extend(3 * p..=3 * p + c);
-                starts.push(scalar_rows.len());
-            }
-        }
-        let values = vec![0.; scalar_rows.len()];
-        let symbolic_matrix =
-            SymbolicSparseColMat::new_checked(3 * n, 3 * n, starts, None, scalar_rows);
+        let diagonal = column.iter().map(|&p| begin([p, p])).collect();
+        let off_diagonal = ends.iter().map(|&ends| begin(ends)).collect();
         let symbolic = factorize_symbolic_cholesky(
-            symbolic_matrix.as_ref(),
+            matrix.as_ref(),
             Side::Upper,
             SymmetricOrdering::Identity,
             CholeskySymbolicParams::default(),
         )
         .expect("memory for the symbolic factorisation");
-        let factor = vec![0.; symbolic.len_val()];
+        let (values, factor) = (vec![0.; matrix.row_idx().len()], vec![0.; symbolic.len_val()]);
         let memory = MemBuffer::new(StackReq::any_of(&[
             symbolic
                 .factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::<LltParams, f64>::default()),
             symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
         ]));
-        Self { column, places, symbolic_matrix, values, symbolic, factor, memory }
+        Self { column, diagonal, off_diagonal, matrix, values, symbolic, factor, memory }
     }
 
-    /// Factors the matrix whose block `k` is `blocks[k]`, first the diagonal ones and then those of
-    /// the pairs, plus `shift` I. Returns whether it is positive definite.
-    pub fn factor(&mut self, blocks: &[Symmetric], shift: f64) -> bool {
-        let n = self.column.len();
-        self.values.fill(0.);
-        let starts = self.symbolic_matrix.col_ptr();
-        for (k, (&(p, place), m)) in self.places.iter().zip(blocks).enumerate() {
-            let [x, y, z] = [0, 1, 2].map(|c| starts[3 * p + c] + 3 * place);
-            let v = &mut self.values;
-            if k < n {
-                for (to, value) in [x, y, z, y + 1, z + 1, z + 2].into_iter().zip(m) {
-                    v[to] += value;
-                }
-                for to in [x, y + 1, z + 2] {
-                    v[to] += shift;
-                }
-            } else {
-                let square = [m[0], m[1], m[2], m[1], m[3], m[4], m[2], m[4], m[5]];
-                for (to, values) in [x, y, z].into_iter().zip(square.chunks(3)) {
-                    for (r, value) in values.iter().enumerate() {
-                        v[to + r] += value;
-                    }
-                }
-            }
-        }
-        let matrix = SparseColMatRef::new(self.symbolic_matrix.as_ref(), &self.values);
+    /// Factors the matrix of these blocks plus `shift` I. Returns whether it is positive definite.
+    pub fn factor(&mut self, blocks: &Blocks, shift: f64) -> bool {
+        self.fill(blocks, shift);
         self.symbolic
             .factorize_numeric_llt(
                 &mut self.factor,
-                matrix,
+                SparseColMatRef::new(self.matrix.as_ref(), &self.values),
                 Side::Upper,
                 LltRegularization::default(),
                 Par::Seq,
@@ -135,6 +114,22 @@ impl System {
                 Spec::default(),
             )
             .is_ok()
+    }
+
+    fn fill(&mut self, blocks: &Blocks, shift: f64) {
+        let v = &mut self.values;
+        v.fill(0.);
+        for (&[x, y, z], m) in self.diagonal.iter().zip(&blocks.beads) {
+            let above = [x, y, z, y + 1, z + 1, z + 2];
+            above.into_iter().zip(m).for_each(|(to, value)| v[to] += value);
+            [x, y + 1, z + 2].into_iter().for_each(|to| v[to] += shift);
+        }
+        for (columns, m) in self.off_diagonal.iter().zip(blocks.off_diagonal()) {
+            let [xx, yx, zx, yy, zy, zz] = *m;
+            for (&to, values) in columns.iter().zip([[xx, yx, zx], [yx, yy, zy], [zx, zy, zz]]) {
+                v[to..to + 3].iter_mut().zip(values).for_each(|(v, value)| *v += value);
+            }
+        }
     }
 
     /// Solves with the last factor.
@@ -156,20 +151,9 @@ impl System {
 
 /// The elimination order of beads: where each comes in it.
 fn minimum_degree(n: usize, pairs: &[[usize; 2]]) -> Vec<usize> {
-    let mut rows: Vec<Vec<usize>> = vec![vec![]; n];
-    for &[a, b] in pairs {
-        rows[a.min(b)].push(a.max(b));
-    }
-    let mut starts = vec![0];
-    let mut flat = Vec::new();
-    for rows in &mut rows {
-        rows.sort_unstable();
-        rows.dedup();
-        flat.extend_from_slice(rows);
-        starts.push(flat.len());
-    }
-    let nnz = flat.len();
-    let graph = SymbolicSparseColMat::new_checked(n, n, starts, None, flat);
+    let below = pairs.iter().map(|&pair| sorted(pair)).map(|[first, last]| [last, first]);
+    let graph = pattern(sorted_rows(below, n));
+    let nnz = graph.row_idx().len();
     let (mut order, mut inverse) = (vec![0; n], vec![0; n]);
     let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, nnz));
     amd::order(
@@ -181,4 +165,37 @@ fn minimum_degree(n: usize, pairs: &[[usize; 2]]) -> Vec<usize> {
     )
     .expect("memory for the ordering");
     inverse
+}
+
+fn sorted([p, q]: [usize; 2]) -> [usize; 2] {
+    [p.min(q), p.max(q)]
+}
+
+/// The rows of each column's entries, which are given as row and column, perhaps more than once.
+fn sorted_rows(entries: impl Iterator<Item = [usize; 2]>, n: usize) -> Vec<Vec<usize>> {
+    let mut rows = vec![vec![]; n];
+    entries.for_each(|[row, column]| rows[column].push(row));
+    for rows in &mut rows {
+        rows.sort_unstable();
+        rows.dedup();
+    }
+    rows
+}
+
+/// The scalar pattern of the upper triangle whose blocks are at `rows`, the diagonal ones being last.
+fn upper_triangle(rows: &[Vec<usize>]) -> SymbolicSparseColMat<usize> {
+    let column = |(p, c): (usize, usize)| -> Vec<usize> {
+        let above = &rows[p][..rows[p].len() - 1];
+        above.iter().flat_map(|q| 3 * q..3 * q + 3).chain(3 * p..=3 * p + c).collect()
+    };
+    pattern((0..rows.len()).flat_map(|p| [0, 1, 2].map(|c| (p, c))).map(column).collect())
+}
+
+/// The square pattern of these rows in each column.
+fn pattern(columns: Vec<Vec<usize>>) -> SymbolicSparseColMat<usize> {
+    let (n, mut starts) = (columns.len(), vec![0]);
+    for column in &columns {
+        starts.push(starts[starts.len() - 1] + column.len());
+    }
+    SymbolicSparseColMat::new_checked(n, n, starts, None, columns.concat())
 }

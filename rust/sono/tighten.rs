@@ -35,20 +35,19 @@
 
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
-use crate::curve::Curve;
-use crate::error::Result;
-use crate::inscribed::{refine, rope_curve};
+use crate::geometry::curve::Curve;
 use crate::measures::{Measures, measure};
-use crate::rope::{Rope, Violation};
-use crate::settings::Settings;
+use crate::outcome::Outcome;
+use crate::resample::refine;
+use crate::sono::best::Best;
+use crate::sono::rope::{Rope, Violation};
+use crate::sono::settings::Settings;
+use crate::sono::stage::Stage;
 
 /// Tolerance while collapsing, while the jammed rope is then eased, and at the end of the anneal.
-const COLLAPSED: f64 = 0.3;
+pub const COLLAPSED: f64 = 0.3;
 const EASED: f64 = 0.03;
 const ANNEALED: f64 = 3e-3;
 /// Share of its length that a collapsing rope loses in a sweep.
@@ -65,39 +64,11 @@ const TOO_FINE: f64 = 0.35;
 const LOOSE: f64 = 0.5;
 /// Sweeps in which a jammed rope is eased.
 const EASE_SWEEPS: u64 = 1000;
-/// Largest random displacement of a coordinate. It breaks symmetries, which SONO alone would keep,
-/// and shakes beads out of each other's grooves.
-const JITTER: f64 = 0.05;
-/// Sweeps between two looks at what the rope measures.
+/// Sweeps between two looks at what the rope measures, at its slack while it collapses, and at the
+/// tension of several components.
 const BURST: u64 = 1000;
-
-/// Which part of the tightening a [`Tightener`] does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stage {
-    /// From any embedded curve to one that holds a thick rope: [`crate::Loosening`].
-    Loosen,
-    /// From a loose to a jammed rope.
-    Collapse,
-    /// Lowers the tolerance from large to small.
-    Anneal,
-    /// The same on a refined rope, from a smaller tolerance on.
-    Reanneal,
-    /// Ends with dispersion and overlaps below the final tolerance.
-    Settle,
-}
-
-/// Whether a [`Tightener`] is done. Not getting there is no error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// Go on.
-    Running,
-    /// The stage has done what it is for.
-    Tight,
-    /// The final tolerance is out of reach; the best state so far is all there is.
-    Stuck,
-}
+const SLACK_SWEEPS: u64 = 100;
+const TENSION_SWEEPS: u64 = 10;
 
 /// Where a [`Tightener`] stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -120,14 +91,6 @@ pub struct Status {
     pub best: Measures,
 }
 
-/// The best state so far: valid ones before others, then the shorter bound L_c.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Best {
-    curve: Curve,
-    /// Whether it is not valid, whether it has no L_c, and L_c, or else L_p.
-    rank: (bool, bool, f64),
-}
-
 /// Tightens a rope, stage by stage; everything needed to go on later is serialised with it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Tightener {
@@ -146,61 +109,18 @@ pub struct Tightener {
 }
 
 impl Tightener {
-    /// Collapses an embedded curve of any scale that holds a rope of at most `most` beads; their
-    /// number is chosen by itself. See [`crate::Collapse`] for any other.
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::SelfCrossing`], [`Error::TooThin`].
-    pub fn collapse(curve: &Curve, most: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let mut rope = Rope::new(rope_curve(curve, most)?);
-        jitter(&mut rope, settings.seed);
-        Ok(Self::new(rope, Stage::Collapse, u64::MAX, COLLAPSED, settings))
-    }
-
-    /// Anneals a rope on `n` vertices in all; `curve` must be one: see [`Tightener::collapse`].
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn anneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let mut rope = Rope::resampled(curve, n, settings.seed)?;
-        jitter(&mut rope, settings.seed);
-        let planned = settings.anneal_sweeps.into();
-        Ok(Self::new(rope, Stage::Anneal, planned, settings.anneal_tolerance, settings))
-    }
-
-    /// Anneals a rope that has been annealed on fewer vertices.
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn reanneal(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let mut rope = Rope::resampled(curve, n, settings.seed)?;
-        jitter(&mut rope, settings.seed);
-        let planned = u64::from(settings.anneal_sweeps.div_ceil(2));
-        let tolerance = settings.anneal_tolerance / 6.;
-        Ok(Self::new(rope, Stage::Reanneal, planned, tolerance, settings))
-    }
-
-    /// Settles a rope on `n` vertices in all, starting at a tolerance of a coarser one's roughness.
-    ///
-    /// # Errors
-    /// [`Error::Setting`], [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn settle(curve: &Curve, n: usize, settings: Settings) -> Result<Self> {
-        settings.check()?;
-        let rope = Rope::resampled(curve, n, settings.seed)?;
-        let tolerance = 0.3 * rope.dl().min(1.).powi(2);
-        let planned = n as u64 * u64::from(settings.settle_sweeps);
-        Ok(Self::new(rope, Stage::Settle, planned, tolerance, settings))
-    }
-
-    fn new(rope: Rope, stage: Stage, planned: u64, tolerance: f64, settings: Settings) -> Self {
-        let rank = (true, true, f64::MAX);
-        let best = Best { curve: scaled(rope.curve(), measure(rope.curve()).r_s), rank };
+    /// One stage on a rope, of so many sweeps in which the tolerance falls from this one.
+    pub(super) fn new(
+        rope: Rope,
+        stage: Stage,
+        planned: u64,
+        tolerance: f64,
+        settings: Settings,
+    ) -> Self {
         let mut tightener = Self {
             settings,
             stage,
+            best: Best::new(rope.curve()),
             rope,
             sweeps: 0,
             planned,
@@ -208,10 +128,9 @@ impl Tightener {
             undone: 0,
             met: Violation::default(),
             outcome: Outcome::Running,
-            best,
             length: f64::MAX,
         };
-        tightener.keep_best();
+        tightener.best.offer(tightener.rope.curve(), settings.tolerance);
         tightener
     }
 
@@ -219,7 +138,7 @@ impl Tightener {
     pub fn is_sound(&self) -> bool {
         self.settings.check().is_ok()
             && self.rope.is_sound()
-            && self.best.curve.is_sound()
+            && self.best.curve().is_sound()
             && self.planned > 0
             && self.first_tolerance > 0.
             && self.first_tolerance.is_finite()
@@ -238,9 +157,22 @@ impl Tightener {
 
     /// One sweep, and what follows from it.
     pub fn step(&mut self) -> Outcome {
-        if self.outcome != Outcome::Running {
-            return self.outcome;
+        if self.outcome == Outcome::Running {
+            self.sweep();
+            if self.sweeps.is_multiple_of(TENSION_SWEEPS) && self.rope.curve().components() > 1 {
+                self.rope.share_tension();
+            }
+            if self.is_collapsing() && self.sweeps.is_multiple_of(SLACK_SWEEPS) {
+                self.take_in_slack();
+            }
+            if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
+                self.look();
+            }
         }
+        self.outcome
+    }
+
+    fn sweep(&mut self) {
         let tolerance = self.tolerance();
         let Settings { c_1, c_2, .. } = self.settings;
         match self.rope.sweep(c_1, c_2, 0.5 * tolerance) {
@@ -251,22 +183,16 @@ impl Tightener {
             None => self.undone += 1,
         }
         self.sweeps += 1;
-        if self.sweeps.is_multiple_of(10) && self.rope.curve().components() > 1 {
-            self.rope.share_tension();
+    }
+
+    /// Looks at what the rope measures, and whether the stage is done.
+    fn look(&mut self) {
+        self.undone += u64::from(!self.rope.confirm());
+        let valid = self.best.offer(self.rope.curve(), self.settings.tolerance);
+        self.outcome = self.judge(valid);
+        if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
+            self.best.replace(self.rope.curve());
         }
-        if self.collapsing() && self.sweeps.is_multiple_of(100) {
-            self.take_in_slack();
-        }
-        if self.sweeps.is_multiple_of(BURST) || self.sweeps == self.planned {
-            self.undone += u64::from(!self.rope.confirm());
-            let valid = self.keep_best();
-            self.outcome = self.judge(valid);
-            if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
-                let curve = self.rope.curve();
-                self.best.curve = scaled(curve, measure(curve).r_s);
-            }
-        }
-        self.outcome
     }
 
     fn shrink_on_no_overlaps(&mut self, tolerance: f64) {
@@ -288,7 +214,7 @@ impl Tightener {
     fn tolerance(&self) -> f64 {
         let last = match self.stage {
             Stage::Loosen | Stage::Collapse => {
-                return if self.collapsing() { COLLAPSED } else { EASED };
+                return if self.is_collapsing() { COLLAPSED } else { EASED };
             }
             Stage::Anneal | Stage::Reanneal => ANNEALED.min(self.first_tolerance),
             Stage::Settle => 0.5 * self.settings.tolerance,
@@ -297,7 +223,7 @@ impl Tightener {
     }
 
     /// Whether the rope still has to jam; then it is eased, and the end of that is planned.
-    fn collapsing(&self) -> bool {
+    fn is_collapsing(&self) -> bool {
         self.stage == Stage::Collapse && self.planned == u64::MAX
     }
 
@@ -340,22 +266,9 @@ impl Tightener {
         }
     }
 
-    /// Remembers the rope as it is if it is better than what was; returns whether it is valid.
-    fn keep_best(&mut self) -> bool {
-        let now = measure(self.rope.curve());
-        let overlap = 2. * (1. - now.r_s);
-        let valid = now.dispersion.max(overlap) <= self.settings.tolerance;
-        // Without the bound L_c a rope is so coarse or rough that any with one is better.
-        let rank = (!valid, now.l_c.is_none(), now.l_c.unwrap_or(now.l_p));
-        if rank.2.is_finite() && rank < self.best.rank {
-            self.best = Best { curve: scaled(self.rope.curve(), now.r_s), rank };
-        }
-        valid
-    }
-
     /// The best state so far, its R_s = 1, its centre at the origin.
     pub fn best(&self) -> &Curve {
-        &self.best.curve
+        self.best.curve()
     }
 
     /// Where it stands.
@@ -368,24 +281,7 @@ impl Tightener {
             undone: self.undone,
             epsilon: 0.5 * self.tolerance(),
             met: self.met,
-            best: measure(&self.best.curve),
+            best: measure(self.best()),
         }
     }
-}
-
-/// The same shape, whose thickness is `r_s`, with R_s = 1 and its centre at the origin.
-pub(crate) fn scaled(curve: &Curve, r_s: f64) -> Curve {
-    let mut curve = curve.clone();
-    curve.scale(1. / r_s);
-    curve.centre();
-    curve
-}
-
-/// Displaces each bead at random.
-fn jitter(rope: &mut Rope, seed: u64) {
-    let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    // On a fine rope more than a share of dl would tie knots into neighbouring edges.
-    let size = JITTER.min(0.15 * rope.dl());
-    let mut coordinate = || rng.random_range(-size..size);
-    rope.displace(|| DVec3::new(coordinate(), coordinate(), coordinate()));
 }

@@ -30,8 +30,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::curve::Curve;
-use crate::segments;
+use crate::geometry::curve::Curve;
+use crate::geometry::neighbours::Pair;
+use crate::geometry::segments;
 
 /// Whether no strand passes another while the beads move straight from `before` to where `curve` has
 /// them. Pairs that count are in `pairs`, or stay `unlisted` apart; `least[c]` is k for component c.
@@ -39,40 +40,66 @@ pub fn stay_apart(
     before: &[DVec3],
     curve: &Curve,
     least: &[usize],
-    pairs: &[(u32, u32)],
+    pairs: &[Pair],
     unlisted: f64,
 ) -> bool {
     let after = curve.vertices();
     if !after.iter().all(|v| v.is_finite()) {
         return false;
     }
-    let way = |i: usize, j: usize| [before[j] - before[i], after[j] - after[i]];
     let apart = pairs.iter().fold(unlisted * unlisted, |apart, &(i, j)| {
-        apart.min(shortest_squared(way(i as usize, j as usize)))
+        let way = [before, after].map(|v| v[j as usize] - v[i as usize]);
+        apart.min(shortest_squared(way))
     });
     curve.ranges().zip(least).all(|(range, &k)| {
-        let mut last = way(range.end - 1, range.start);
-        let mut last_shortest = shortest_squared(last);
-        let (mut shortest, mut longest, mut sharpest) = (f64::MAX, 0f64, 0f64);
-        for i in range.clone() {
-            let next = way(i, if i + 1 == range.end { range.start } else { i + 1 });
-            let next_shortest = shortest_squared(next);
-            shortest = shortest.min(next_shortest);
-            longest = next.iter().fold(longest, |longest, edge| longest.max(edge.length_squared()));
-            let bends = [0, 1].map(|end| (next[end] - last[end]).length_squared());
-            let bend = bends[0].max(bends[1]) / next_shortest.min(last_shortest);
-            sharpest = sharpest.max(bend);
-            (last, last_shortest) = (next, next_shortest);
-        }
-        let angle = 2. * (0.5 * sharpest.sqrt()).asin();
-        let edges = k.min(range.len() - 1) + 1;
-        let ratio = (shortest / longest).sqrt();
-        let near_apart = || {
-            stays_open(edges, angle, ratio) && stays_open(edges - 1, angle, ratio)
-                || near_edges_apart(&before[range.clone()], &after[range.clone()], k)
-        };
-        longest < 2. * apart && angle < PI && near_apart()
+        let [before, after] = [before, after].map(|v| &v[range.clone()]);
+        let edges = Edges::on_the_way(before, after);
+        edges.longest < 2. * apart
+            && edges.angle() < PI
+            && (edges.stay_open(k) || near_edges_apart(before, after, k))
     })
+}
+
+/// What the edges of a component are like on all of their way.
+struct Edges {
+    n: usize,
+    /// The least and the largest squared length.
+    shortest: f64,
+    longest: f64,
+    /// A bound on the square of 2 sin(theta/2).
+    sharpest: f64,
+}
+
+impl Edges {
+    fn on_the_way(before: &[DVec3], after: &[DVec3]) -> Self {
+        let n = before.len();
+        let way = |i: usize| [before, after].map(|v| v[if i + 1 == n { 0 } else { i + 1 }] - v[i]);
+        let mut last = way(n - 1);
+        let mut last_shortest = shortest_squared(last);
+        let mut edges = Self { n, shortest: f64::MAX, longest: 0., sharpest: 0. };
+        for next in (0..n).map(way) {
+            let shortest = shortest_squared(next);
+            edges.shortest = edges.shortest.min(shortest);
+            edges.longest = next.iter().fold(edges.longest, |most, e| most.max(e.length_squared()));
+            let bends = [0, 1].map(|end| (next[end] - last[end]).length_squared());
+            let bend = bends[0].max(bends[1]) / shortest.min(last_shortest);
+            edges.sharpest = edges.sharpest.max(bend);
+            (last, last_shortest) = (next, shortest);
+        }
+        edges
+    }
+
+    /// The largest angle by which the component turns at a bead.
+    fn angle(&self) -> f64 {
+        2. * (0.5 * self.sharpest.sqrt()).asin()
+    }
+
+    /// Whether no arc of up to k + 1 of them closes.
+    fn stay_open(&self, k: usize) -> bool {
+        let (angle, ratio) = (self.angle(), (self.shortest / self.longest).sqrt());
+        let edges = k.min(self.n - 1) + 1;
+        stays_open(edges, angle, ratio) && stays_open(edges - 1, angle, ratio)
+    }
 }
 
 /// Whether edges 2 to k apart on one component are further from each other than their ends move.
@@ -122,8 +149,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::polish::SHORTEST_EDGE;
-    use crate::procedures::{least_index_distance, most_bend};
+    use crate::beads::{SHORTEST_EDGE, least_index_distance, most_bend};
 
     /// A regular polygon of edges 1 in the plane, its vertices as `at` puts them.
     fn polygon(n: usize, at: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {

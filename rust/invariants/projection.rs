@@ -3,8 +3,8 @@
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-use crate::curve::Curve;
-use crate::sticks::volume;
+use crate::geometry::curve::Curve;
+use crate::geometry::sticks::volume;
 
 /// A crossing, seen along the z axis from above.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,24 +4,22 @@
 //! Until the next list no bead leaves the ball of radius skin/2 about its place of that time (a step
 //! that leads out of it ends on its surface, and a new list is made). So beads that are not listed
 //! never overlap. Before the new list the straight way from the old places to the new ones is looked
-//! at as a whole: if a strand may pass another on it ([`crate::passage`]), all is undone that followed
+//! at as a whole: if a strand may pass another on it ([`crate::sono::passage`]), all is undone that followed
 //! the last list. So it is, too, before the rope is looked at in any other way that matters.
 
 use std::ops::Range;
 
 use glam::DVec3;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
-use crate::curve::Curve;
-use crate::error::{Error, Result};
-use crate::inscribed::{coarsen, refine};
+use crate::beads::least_index_distance;
+use crate::geometry::curve::Curve;
+use crate::geometry::neighbours::{Pair, close_pairs};
+use crate::geometry::separation::Separation;
+use crate::geometry::sticks::Sticks;
 use crate::measures::measure;
-use crate::neighbours::{Separation, for_each_close_pair};
-use crate::passage::stay_apart;
-use crate::procedures::{control_curvature, equalize_edges, least_index_distance, remove_overlaps};
-use crate::sticks::Sticks;
+use crate::sono::passage::stay_apart;
+use crate::sono::procedures::{control_curvature, equalize_edges, remove_overlaps};
 
 /// The thickest skin of the neighbour list, hence the longest way of a bead in one sweep.
 const THICKEST_SKIN: f64 = 0.25;
@@ -32,11 +30,6 @@ const THINNEST_SKIN: f64 = 1e-9;
 /// the shorter the list. One that lasts so long is made anew to learn whether a thinner one will do.
 const SHORT_LIFE: usize = 150;
 const LONG_LIFE: usize = 500;
-
-/// Edges must be shorter: with edges of sqrt 8 R strands fit between beads.
-pub const LONGEST_EDGE: f64 = 2.3;
-/// From this edge length on, a rope is not resampled by taking chords, but straightened.
-const LONGEST_CHORD: f64 = 1.2;
 
 /// What a sweep met before it corrected it, R = 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -57,12 +50,26 @@ impl Violation {
 }
 
 /// A rope of radius 1 on a closed curve.
+///
+/// ```
+/// use glam::DVec3;
+/// use sono::sono::rope::Rope;
+/// let angle = |i: usize| std::f64::consts::TAU * i as f64 / 60.;
+/// let ring = (0..60).map(|i| DVec3::new(3. * angle(i).cos(), 2. * angle(i).sin(), 0.));
+/// let mut rope = Rope::new(sono::Curve::new(vec![ring.collect()])?);
+/// let before = rope.length();
+/// rope.stretch(0.99);
+/// // The edges are still too long, by what they were unequal and a hundredth.
+/// assert!(rope.sweep(0.5, 0.5, 0.).expect("no strand passes").dispersion > 0.01);
+/// assert!(rope.length() < before);
+/// # Ok::<(), sono::Error>(())
+/// ```
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Rope {
     curve: Curve,
     /// Required edge length of each component.
     dl: Vec<f64>,
-    pairs: Vec<(u32, u32)>,
+    pairs: Vec<Pair>,
     /// Least index distance of listed beads, for each component.
     least: Vec<usize>,
     /// Where the beads were when `pairs` was made.
@@ -81,11 +88,9 @@ impl Rope {
         Self::of(curve)
     }
 
-    /// The same on a curve as it is.
-    fn of(curve: Curve) -> Self {
-        let dl: Vec<f64> = (0..curve.components())
-            .map(|c| curve.component_length(c) / curve.range(c).len() as f64)
-            .collect();
+    /// The same on a curve as it is, whose thickness R_s is 1 or about to be.
+    pub fn of(curve: Curve) -> Self {
+        let dl = curve.mean_edges().collect();
         let mut rope = Self {
             curve,
             dl,
@@ -99,37 +104,6 @@ impl Rope {
         rope.skin = rope.longest_dl().powi(2).min(0.5 * THICKEST_SKIN);
         rope.list_neighbours();
         rope
-    }
-
-    /// A rope on `n` vertices in all, from one on any number: K_P at equal chords, the first
-    /// vertex at random. Where it is `n` already, it is taken as it is.
-    ///
-    /// # Errors
-    /// [`Error::TooFew`], [`Error::Pierced`], [`Error::TooCoarse`].
-    pub fn resampled(curve: &Curve, n: usize, seed: u64) -> Result<Self> {
-        let shift = Pcg64Mcg::seed_from_u64(seed).random();
-        let given = measure(curve);
-        let on = |n: usize| {
-            if curve.n() == n {
-                return Ok(Self::new(curve.clone()));
-            } else if given.l_p / (n as f64) < LONGEST_CHORD {
-                return Ok(Self::new(refine(curve, n, shift)?));
-            }
-            let mut coarse = coarsen(curve, n, shift)?;
-            coarse.scale(1. / given.r_s);
-            Ok(Self::of(coarse))
-        };
-        let rope = on(n)?;
-        let dl = rope.longest_dl();
-        if dl < LONGEST_EDGE {
-            return Ok(rope);
-        }
-        let (mut needed, mut longest) = (n, dl);
-        while longest >= LONGEST_EDGE {
-            needed = (needed + 1).max((needed as f64 * longest / LONGEST_EDGE) as usize);
-            longest = on(needed)?.longest_dl();
-        }
-        Err(Error::TooCoarse { n, dl, limit: LONGEST_EDGE, needed })
     }
 
     /// Whether a restored rope is one: all beads there are, all numbers are finite.
@@ -249,9 +223,8 @@ impl Rope {
     ///
     /// EE moves a vertex by c_1 (s_i - dl), so this difference is the force along the rope.
     pub fn share_tension(&mut self) {
-        let tension: Vec<_> = (0..self.dl.len())
-            .map(|c| self.curve.component_length(c) / self.curve.range(c).len() as f64 - self.dl[c])
-            .collect();
+        let tension: Vec<_> =
+            self.curve.mean_edges().zip(&self.dl).map(|(mean, dl)| mean - dl).collect();
         let mean = self.curve.ranges().zip(&tension).map(|(r, t)| r.len() as f64 * t).sum::<f64>()
             / self.curve.n() as f64;
         for (dl, t) in self.dl.iter_mut().zip(tension) {
@@ -286,14 +259,7 @@ impl Rope {
     fn list_neighbours(&mut self) {
         self.least = self.dl.iter().map(|&dl| least_index_distance(dl)).collect();
         let separation = Separation::by_index(&self.curve, &self.least);
-        let reach = 2. + self.skin;
-        let pairs = &mut self.pairs;
-        pairs.clear();
-        for_each_close_pair(&self.curve, &separation, reach, |i, j, _| {
-            pairs.push((i as u32, j as u32));
-            reach
-        });
-        pairs.sort_unstable();
+        self.pairs = close_pairs(&self.curve, &separation, 2. + self.skin);
         self.reference.clear();
         self.reference.extend_from_slice(self.curve.vertices());
         self.age = 0;

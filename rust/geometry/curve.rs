@@ -138,6 +138,19 @@ impl Curve {
         (0..v.len()).map(|i| v[i].distance(v[(i + 1) % v.len()]))
     }
 
+    /// Arclength of each vertex from the start of its component.
+    pub fn arclengths(&self) -> Vec<f64> {
+        let mut arclengths = Vec::with_capacity(self.n());
+        for c in 0..self.components() {
+            let mut at = 0.;
+            arclengths.extend(self.edge_lengths(c).map(|s| {
+                at += s;
+                at - s
+            }));
+        }
+        arclengths
+    }
+
     /// Turning angles of component `c`, in radians; angle `i` is that between edges `i - 1` and `i`.
     pub fn turning_angles(&self, c: usize) -> impl Iterator<Item = f64> + '_ {
         let v = self.component(c);
@@ -148,6 +161,16 @@ impl Curve {
     /// Length of component `c`.
     pub fn component_length(&self, c: usize) -> f64 {
         self.edge_lengths(c).sum()
+    }
+
+    /// Mean edge length of each component.
+    pub fn mean_edges(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.components()).map(|c| self.component_length(c) / self.range(c).len() as f64)
+    }
+
+    /// Longest edge of each component.
+    pub fn longest_edges(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.components()).map(|c| self.edge_lengths(c).fold(0., f64::max))
     }
 
     /// Length of all components together.

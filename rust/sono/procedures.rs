@@ -5,33 +5,9 @@
 //! line between them, symmetrically (a Gauss-Seidel sweep), and returns the largest violation it
 //! met. RO's factor is printed as c_1 in the paper where c_2 is meant.
 
-use std::f64::consts::PI;
-
 use glam::DVec3;
 
-/// Least index distance at which beads must not overlap: ceil(pi R_c/dl - 1).
-///
-/// The definition of SR has MinRad in place of R_c. ControlCurvature keeps MinRad >= R_c, so this
-/// is the stricter side: a rope that obeys it measures R_s = 1. (The paper's text on the simulation
-/// lets index distances up to ceil(pi MinRad/dl) overlap, two more than its definition of SR.)
-///
-/// Edges of [`COARSE`] or more would have neighbours 2 R apart. There CC keeps MinRad > 2 dl/pi, so
-/// that the rule, with MinRad, goes on to exempt them.
-pub fn least_index_distance(dl: f64) -> usize {
-    (PI * (1. - 0.25 * dl * dl).max(0.).sqrt() / dl - 1.).ceil().max(2.) as usize
-}
-
-/// From this edge length on the index rule, not the thickness of the rope, limits how sharp it turns.
-pub const COARSE: f64 = 1.235;
-
-/// Largest length of a second difference of the vertices, v_(i-1) - 2 v_i + v_(i+1), for edges `dl`.
-///
-/// It is 2 dl sin(theta_i/2). The paper's R_i = dl/(2 sin(theta_i/2)), the radius at which the disks on
-/// both sides of a bead become tangent, is at least 1 where it is at most dl^2. On coarse ropes
-/// theta_i must stay below 2 arctan(pi/4), hence it below 1.2353 dl, for MinRad > 2 dl/pi.
-pub fn most_bend(dl: f64) -> f64 {
-    dl * dl.min(COARSE)
-}
+use crate::beads::most_bend;
 
 /// EE: brings each edge of one component closer to `dl`, by the share `c_1` at either end.
 /// Returns the largest |dl/s_i - 1| met.

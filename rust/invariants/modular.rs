@@ -9,50 +9,79 @@ pub const PRIME: u64 = 2_147_482_951;
 /// one place add up. Gaussian elimination, each time with the shortest row that is left.
 ///
 /// ```
-/// use sono::modular::determinant;
+/// use sono::invariants::modular::determinant;
 /// assert_eq!(determinant(2, &[(0, 0, 2), (0, 1, 1), (1, 0, 5), (1, 1, 3)]), 1);
 /// ```
 pub fn determinant(n: usize, entries: &[(usize, usize, u64)]) -> u64 {
-    let mut rows: Vec<BTreeMap<usize, u64>> = vec![BTreeMap::new(); n];
-    for &(row, column, value) in entries {
-        let sum = rows[row].entry(column).or_insert(0);
-        *sum = (*sum + value % PRIME) % PRIME;
-    }
-    rows.iter_mut().for_each(|row| row.retain(|_, value| *value != 0));
-    let mut columns: Vec<Vec<usize>> = vec![vec![]; n];
-    for (i, row) in rows.iter().enumerate() {
-        row.keys().for_each(|&column| columns[column].push(i));
-    }
+    let mut elimination = Elimination::new(n, entries);
     let mut left: Vec<_> = (0..n).collect();
     let mut pivots = vec![0; n];
     let mut product = 1;
-    while let Some(at) = (0..left.len()).min_by_key(|&k| rows[left[k]].len()) {
+    while let Some(at) = (0..left.len()).min_by_key(|&k| elimination.rows[left[k]].len()) {
         let i = left.swap_remove(at);
-        let row = std::mem::take(&mut rows[i]);
-        let Some((&pivot, &value)) = row.iter().min_by_key(|(column, _)| columns[**column].len())
-        else {
-            return 0;
-        };
+        let Some((pivot, value)) = elimination.eliminate(i) else { return 0 };
         pivots[i] = pivot;
         product = product * value % PRIME;
+    }
+    if is_odd(&pivots) { (PRIME - product) % PRIME } else { product }
+}
+
+/// A matrix by its rows.
+struct Elimination {
+    /// The values that are not 0, by their columns.
+    rows: Vec<BTreeMap<usize, u64>>,
+    /// In which rows there may be one.
+    columns: Vec<Vec<usize>>,
+}
+
+impl Elimination {
+    fn new(n: usize, entries: &[(usize, usize, u64)]) -> Self {
+        let mut rows: Vec<BTreeMap<usize, u64>> = vec![BTreeMap::new(); n];
+        for &(row, column, value) in entries {
+            let sum = rows[row].entry(column).or_insert(0);
+            *sum = (*sum + value % PRIME) % PRIME;
+        }
+        rows.iter_mut().for_each(|row| row.retain(|_, value| *value != 0));
+        let mut columns = vec![vec![]; n];
+        for (i, row) in rows.iter().enumerate() {
+            row.keys().for_each(|&column| columns[column].push(i));
+        }
+        Self { rows, columns }
+    }
+
+    /// Takes out a row, and the column in which it has a value and there are fewest. Returns that
+    /// column and the value, if there is one.
+    fn eliminate(&mut self, i: usize) -> Option<(usize, u64)> {
+        let row = std::mem::take(&mut self.rows[i]);
+        let (&pivot, &value) = row.iter().min_by_key(|(column, _)| self.columns[**column].len())?;
         let inverse = power(value, PRIME - 2);
-        for j in std::mem::take(&mut columns[pivot]) {
-            let Some(factor) = rows[j].remove(&pivot).map(|other| other * inverse % PRIME) else {
-                continue;
-            };
-            for (&column, &value) in row.iter().filter(|(column, _)| **column != pivot) {
-                let changed = rows[j].entry(column).or_insert_with(|| {
-                    columns[column].push(j);
-                    0
-                });
-                *changed = (*changed + PRIME - factor * value % PRIME) % PRIME;
-                if *changed == 0 {
-                    rows[j].remove(&column);
-                }
+        for j in std::mem::take(&mut self.columns[pivot]) {
+            if let Some(other) = self.rows[j].remove(&pivot) {
+                let others = row.iter().filter(|(column, _)| **column != pivot);
+                self.subtract(j, other * inverse % PRIME, others);
+            }
+        }
+        Some((pivot, value))
+    }
+
+    /// Subtracts `factor` times the values of another row from row `j`.
+    fn subtract<'a>(
+        &mut self,
+        j: usize,
+        factor: u64,
+        other: impl Iterator<Item = (&'a usize, &'a u64)>,
+    ) {
+        for (&column, &value) in other {
+            let changed = self.rows[j].entry(column).or_insert_with(|| {
+                self.columns[column].push(j);
+                0
+            });
+            *changed = (*changed + PRIME - factor * value % PRIME) % PRIME;
+            if *changed == 0 {
+                self.rows[j].remove(&column);
             }
         }
     }
-    if is_odd(&pivots) { (PRIME - product) % PRIME } else { product }
 }
 
 /// `base` to a power modulo [`PRIME`].

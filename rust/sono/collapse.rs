@@ -1,7 +1,7 @@
 //! From any embedded curve to a jammed rope.
 //!
 //! A curve that holds a rope of a thousand beads is collapsed as it is. A thinner one is first
-//! loosened ([`crate::loosen`]), and so is a rope that has jammed at many times the length that its
+//! loosened ([`crate::loosening`]), and so is a rope that has jammed at many times the length that its
 //! diagram asks for: a knot of c crossings needs some 9 c radii of rope, 12 at most of the knots whose
 //! ropelength is known.
 
@@ -9,14 +9,17 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use crate::curve::Curve;
 use crate::error::{Error, Result};
-use crate::loosen::{Loosening, simplified};
+use crate::geometry::curve::Curve;
+use crate::invariants::projection::fewest_crossings;
+use crate::loosening::{Loosening, simplified};
 use crate::measures::measure;
-use crate::projection::fewest_crossings;
-use crate::rope::Violation;
-use crate::settings::Settings;
-use crate::tighten::{Outcome, Stage, Status, Tightener, scaled};
+use crate::outcome::Outcome;
+use crate::resample::scaled;
+use crate::sono::rope::Violation;
+use crate::sono::settings::Settings;
+use crate::sono::stage::Stage;
+use crate::sono::tighten::{Status, Tightener};
 
 /// Beads of a rope in the curve as it is, and of one in a loosened curve.
 const AS_IT_IS: usize = 1200;
@@ -27,6 +30,20 @@ const A_CROSSING: f64 = 12.;
 const A_COMPONENT: f64 = 30.;
 
 /// Collapses a curve; everything needed to go on later is serialised with it.
+///
+/// ```
+/// // A flat triangle with a spike; its knot type is that of the circle, 2 pi radii long.
+/// use std::time::Duration;
+/// use glam::DVec3;
+/// use sono::{Collapse, Curve, Outcome, Settings};
+/// let corners = [(0., 0.), (9., 0.), (9.01, 50.), (9.02, 0.), (10., -5.)];
+/// let spike = corners.map(|(x, y)| DVec3::new(x, y, 0.));
+/// let curve = Curve::new(vec![spike.to_vec()])?;
+/// let mut collapse = Collapse::new(&curve, false, Settings::default())?;
+/// while collapse.advance(Duration::from_secs(1))?.outcome == Outcome::Running {}
+/// assert!(collapse.status().best.l_p < 7.);
+/// # Ok::<(), sono::Error>(())
+/// ```
 #[derive(Serialize, Deserialize)]
 pub struct Collapse {
     settings: Settings,
@@ -44,7 +61,7 @@ pub struct Collapse {
 }
 
 impl Collapse {
-    /// Collapses any embedded curve of any scale; the number of vertices is chosen by itself. A curve
+    /// Collapses any embedded curve, in any unit; the number of vertices is chosen by itself. A curve
     /// that was loosened before is not loosened again.
     ///
     /// # Errors

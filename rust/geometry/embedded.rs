@@ -6,9 +6,9 @@
 
 use glam::DVec3;
 
-use crate::curve::Curve;
 use crate::error::{Error, Result};
-use crate::segments::distance;
+use crate::geometry::curve::Curve;
+use crate::geometry::segments::distance;
 
 /// Two edges count as meeting when they come closer than this share of the curve's mean edge.
 const TOUCHING: f64 = 1e-9;

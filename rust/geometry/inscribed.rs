@@ -11,13 +11,22 @@
 
 use glam::DVec3;
 
-use crate::curve::{Curve, turning_angle};
-use crate::embedded::check_embedded;
-use crate::error::{Error, Result};
-use crate::measures::measure;
-use crate::sticks::Sticks;
+use crate::geometry::curve::{Curve, turning_angle};
+use crate::geometry::sticks::Sticks;
 
 /// The inscribed knot of a curve, all components.
+///
+/// ```
+/// // That of a square of side 2 is its incircle.
+/// use glam::DVec3;
+/// use sono::geometry::inscribed::Inscribed;
+/// let square = [(1., 1.), (-1., 1.), (-1., -1.), (1., -1.)].map(|(x, y)| DVec3::new(x, y, 0.));
+/// let inscribed = Inscribed::new(&sono::Curve::new(vec![square.to_vec()])?);
+/// assert!((inscribed.lengths().sum::<f64>() - std::f64::consts::TAU).abs() < 1e-14);
+/// let (circle, _) = inscribed.sample(&[100], 0.);
+/// assert!(circle.vertices().iter().all(|v| (v.length() - 1.).abs() < 1e-14));
+/// # Ok::<(), sono::Error>(())
+/// ```
 pub struct Inscribed {
     components: Vec<Vec<Piece>>,
 }
@@ -97,99 +106,6 @@ impl Inscribed {
             self.components.iter().zip(n).map(|(p, &n)| equal_chords(p, n, shift)).collect();
         let turn = sampled.iter().map(|(_, turn)| *turn).fold(0., f64::max);
         (Curve::from_components(sampled.into_iter().map(|(v, _)| v).collect()), turn)
-    }
-}
-
-/// Shares `n` vertices out to the components in proportion to their lengths, at least 3 to each.
-pub fn share_out(n: usize, lengths: &[f64]) -> Vec<usize> {
-    let per_length = n as f64 / lengths.iter().sum::<f64>();
-    let mut shares = vec![3; lengths.len()];
-    for _ in 3 * lengths.len()..n {
-        let lacking = |c: usize| lengths[c] * per_length - shares[c] as f64;
-        let neediest = (0..shares.len()).max_by(|&a, &b| lacking(a).total_cmp(&lacking(b)));
-        shares[neediest.expect("a curve has components")] += 1;
-    }
-    shares
-}
-
-/// K_P sampled with `n` vertices in all at equal chords: how a tight rope is refined or coarsened.
-///
-/// # Errors
-/// [`Error::TooFew`].
-pub fn refine(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
-    let (inscribed, shares) = shared_out(curve, n)?;
-    Ok(inscribed.sample(&shares, shift).0)
-}
-
-/// K_P of a curve, and what each component gets of `n` vertices.
-fn shared_out(curve: &Curve, n: usize) -> Result<(Inscribed, Vec<usize>)> {
-    let needed = 3 * curve.components();
-    if n < needed {
-        return Err(Error::TooFew { n, needed });
-    }
-    let inscribed = Inscribed::new(curve);
-    let shares = share_out(n, &inscribed.lengths().collect::<Vec<_>>());
-    Ok((inscribed, shares))
-}
-
-/// A tight rope's K_P sampled with `n` vertices in all, so few that the chords might cut through a
-/// strand: vertices between are removed one by one, where that is an isotopy.
-///
-/// # Errors
-/// [`Error::TooFew`]; [`Error::Pierced`] where a strand is in the way.
-pub fn coarsen(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
-    let (inscribed, shares) = shared_out(curve, n)?;
-    let dl = inscribed.lengths().sum::<f64>() / measure(curve).r_s / n as f64;
-    let times = (dl / LOOSE_EDGE).ceil() as usize;
-    let finer: Vec<_> = shares.iter().map(|share| times * share).collect();
-    let mut sticks = Sticks::new(&inscribed.sample(&finer, shift).0);
-    let mut left = 0;
-    while left != sticks.n() && sticks.n() > n {
-        left = sticks.n();
-        for i in 0..times * n {
-            if i % times != 0 && sticks.is_there(i) {
-                sticks.remove(i);
-            }
-        }
-    }
-    if sticks.n() > n {
-        return Err(Error::Pierced { n, needed: sticks.n() });
-    }
-    Ok(sticks.curve())
-}
-
-/// Edge length of a loose rope, as a multiple of its radius.
-const LOOSE_EDGE: f64 = 0.5;
-/// Largest angle by which K_P may turn in all above a chord: it then stays within a fifth of the
-/// chord's length from it, and has no room for a knot.
-const MOST_TURN: f64 = 0.7;
-
-/// A rope of the curve's knot type, from any embedded polygon: K_P sampled with edges at most half
-/// as long as its thickness R_s.
-///
-/// # Errors
-/// [`Error::SelfCrossing`]; [`Error::TooThin`] where that takes over `most` beads.
-pub fn rope_curve(curve: &Curve, most: usize) -> Result<Curve> {
-    check_embedded(curve)?;
-    let given = measure(curve);
-    let inscribed = match given.r_c {
-        Some(_) => Inscribed::new(curve),
-        None => Inscribed::clear_of_strands(curve),
-    };
-    let lengths: Vec<_> = inscribed.lengths().collect();
-    let mut dl = LOOSE_EDGE * given.r_c.unwrap_or(given.dl);
-    loop {
-        let n = (lengths.iter().sum::<f64>() / dl).ceil();
-        if n > most as f64 {
-            return Err(Error::TooThin { limit: most });
-        }
-        let shares = share_out((n as usize).max(12 * lengths.len()), &lengths);
-        let (sampled, turn) = inscribed.sample(&shares, 0.);
-        let r_s = measure(&sampled).r_s;
-        if dl <= 1.1 * LOOSE_EDGE * r_s && turn <= MOST_TURN {
-            return Ok(sampled);
-        }
-        dl = (0.7 * dl).min(LOOSE_EDGE * r_s).max(0.25 * dl);
     }
 }
 

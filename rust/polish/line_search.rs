@@ -1,0 +1,70 @@
+//! How far along a Newton step constraints and the barrier function allow to go.
+
+use super::barrier::{longest_positive, longest_step};
+use super::newton::Step;
+use super::problem::{Multipliers, Surroundings, Unknowns};
+use super::start::LONGEST_WAY;
+use super::term::Term;
+use super::{Best, Polish};
+
+/// Multipliers stay within this factor of mu w/g.
+const KEEP: f64 = 100.;
+/// A step must lower the barrier function by this share of what its slope promises.
+const ENOUGH: f64 = 1e-4;
+/// Rounding errors of the barrier function, as a share of it.
+const NOISE: f64 = 1e-14;
+const MOST_HALVINGS: usize = 40;
+
+impl Polish {
+    /// Goes as far along a step as possible; returns whether that is anywhere.
+    pub(super) fn take(&mut self, step: &Step, around: &Surroundings) -> bool {
+        let longest = step.to.longest_way();
+        let Some((a, rope)) = self.search(step, around, (self.way / longest).min(1.)) else {
+            return false;
+        };
+        self.z = self.multipliers(a, step, around);
+        self.rope = rope;
+        self.newton.learn(a);
+        let thinnest = 0.01 * self.rope.l.iter().copied().fold(f64::MAX, f64::min).powi(2);
+        self.way = (4. * a * longest).clamp(thinnest.min(LONGEST_WAY), LONGEST_WAY);
+        let now = Best::new(self.rope.curve.clone());
+        if now.l_p < self.best.l_p {
+            self.best = now;
+        }
+        true
+    }
+
+    /// The share of the step, at most `most`, that lowers the barrier function, and where it leads.
+    fn search(&self, step: &Step, around: &Surroundings, most: f64) -> Option<(f64, Unknowns)> {
+        let Surroundings { terms, bystanders } = around;
+        let (rope, barrier) = (&self.rope, self.barrier());
+        let pairs = self.contacts.iter().chain(bystanders).copied();
+        let merit = |rope: &Unknowns| barrier.merit(rope, pairs.clone());
+        let others = bystanders.iter().map(|&pair| rope.contact(pair));
+        let all = terms.iter().copied().chain(others);
+        let mut a = all.fold(most, |a, t| a.min(longest_step(&t, &step.to)));
+        let before = merit(rope);
+        for _ in 0..MOST_HALVINGS {
+            let moved = rope.moved(a, &step.to);
+            // False where a bend's course, cubic in l, has led out after all: the merit is NaN.
+            if merit(&moved) <= before + ENOUGH * a * step.slope + NOISE * before.abs() {
+                return Some((a, moved));
+            }
+            a *= 0.5;
+        }
+        None
+    }
+
+    /// The multipliers after the share `a` of a step: as far along it as they stay positive.
+    fn multipliers(&self, a: f64, step: &Step, around: &Surroundings) -> Multipliers {
+        let barrier = self.barrier();
+        let changes = self.z.iter().zip(step.dz.iter());
+        let a_z = longest_positive(changes.map(|(z, dz)| (*z, *dz)));
+        let moved = self.z.map_with(&step.dz, |z, dz| z + a_z * dz);
+        around.terms.map_with(&moved, |t, z| {
+            let [b, c] = t.course(&step.to);
+            let force = barrier.force(&Term { g: t.g + a * (b + a * c), ..*t });
+            z.clamp(force / KEEP, force * KEEP)
+        })
+    }
+}

@@ -1,0 +1,60 @@
+//! From any embedded curve to a jammed rope.
+
+use pyo3::prelude::*;
+
+use super::curve::{Arrays, Given, arrays, curve};
+use super::engine::{budget, restored, settings_from_json, state};
+use super::errors::{released, tried};
+use super::tightener::Status;
+
+/// From any embedded curve to a jammed rope; a thin one is loosened first, unless it was before.
+#[pyclass(module = "sono._core")]
+pub struct Collapse(crate::Collapse);
+
+#[pymethods]
+impl Collapse {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        components: Given<'_>,
+        loosened: bool,
+        settings: &str,
+    ) -> PyResult<Self> {
+        let curve = curve(components)?;
+        let settings = settings_from_json(settings)?;
+        tried(py, || crate::Collapse::new(&curve, loosened, settings)).map(Self)
+    }
+
+    /// Works for about so many seconds, unless done before, with the interpreter released.
+    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
+        let budget = budget(seconds)?;
+        let status = tried(py, || self.0.advance(budget))?;
+        Status::new(py, &status)
+    }
+
+    /// Where it stands.
+    fn status(&self, py: Python<'_>) -> PyResult<Status> {
+        Status::new(py, &released(py, || self.0.status())?)
+    }
+
+    /// The loosened curve, if it was loosened.
+    fn loosened<'py>(&self, py: Python<'py>) -> PyResult<Option<Arrays<'py>>> {
+        self.0.loosened().map(|curve| arrays(py, curve)).transpose()
+    }
+
+    /// The best rope so far, its R_s = 1, its centre at the origin.
+    fn best<'py>(&self, py: Python<'py>) -> PyResult<Arrays<'py>> {
+        arrays(py, &released(py, || self.0.best())?)
+    }
+
+    /// All that is needed to go on later, as JSON.
+    fn state(&self, py: Python<'_>) -> PyResult<String> {
+        state(py, &self.0)
+    }
+
+    /// Goes on from what `state` returned.
+    #[staticmethod]
+    fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
+        restored(py, state, crate::Collapse::is_sound).map(Self)
+    }
+}

@@ -1,0 +1,104 @@
+//! One stage of SONO.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::curve::{Arrays, Given, arrays, curve};
+use super::engine::{budget, name_of, restored, settings_from_json, state};
+use super::errors::{released, tried};
+use super::measures::Measures;
+use crate::{Curve, Settings, Stage};
+
+/// Where a `Tightener` stands; `overlap` and `dispersion` are those the last sweep met, R = 1.
+#[pyclass(frozen, get_all, module = "sono._core")]
+pub struct Status {
+    outcome: &'static str,
+    stage: &'static str,
+    progress: f64,
+    sweeps: u64,
+    undone: u64,
+    epsilon: f64,
+    overlap: f64,
+    dispersion: f64,
+    best: Py<Measures>,
+}
+
+impl Status {
+    pub fn new(py: Python<'_>, status: &crate::Status) -> PyResult<Self> {
+        Ok(Self {
+            outcome: name_of(status.outcome),
+            stage: match status.stage {
+                Stage::Loosen => "loosen",
+                Stage::Collapse => "collapse",
+                Stage::Anneal => "anneal",
+                Stage::Reanneal => "reanneal",
+                Stage::Settle => "settle",
+            },
+            progress: status.progress,
+            sweeps: status.sweeps,
+            undone: status.undone,
+            epsilon: status.epsilon,
+            overlap: status.met.overlap,
+            dispersion: status.met.dispersion,
+            best: Py::new(py, Measures::from(status.best))?,
+        })
+    }
+}
+
+/// One stage of SONO on n vertices in all; `settings` is JSON.
+#[pyclass(module = "sono._core")]
+pub struct Tightener(crate::Tightener);
+
+#[pymethods]
+impl Tightener {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        components: Given<'_>,
+        stage: &str,
+        n: usize,
+        settings: &str,
+    ) -> PyResult<Self> {
+        let curve = curve(components)?;
+        let settings = settings_from_json(settings)?;
+        let begin: fn(&Curve, usize, Settings) -> crate::Result<_> = match stage {
+            "anneal" => crate::Tightener::anneal,
+            "reanneal" => crate::Tightener::reanneal,
+            "settle" => crate::Tightener::settle,
+            _ => {
+                let known = "anneal, reanneal, settle";
+                let message = format!("unknown stage '{stage}'; the stages are: {known}");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        tried(py, || begin(&curve, n, settings)).map(Self)
+    }
+
+    /// Works for about so many seconds, unless done before, with the interpreter released.
+    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
+        let budget = budget(seconds)?;
+        let status = released(py, || self.0.advance(budget))?;
+        Status::new(py, &status)
+    }
+
+    /// Where it stands.
+    fn status(&self, py: Python<'_>) -> PyResult<Status> {
+        Status::new(py, &released(py, || self.0.status())?)
+    }
+
+    /// The best rope so far, its R_s = 1, its centre at the origin.
+    fn best<'py>(&self, py: Python<'py>) -> PyResult<Arrays<'py>> {
+        arrays(py, self.0.best())
+    }
+
+    /// All that is needed to go on later, as JSON.
+    fn state(&self, py: Python<'_>) -> PyResult<String> {
+        state(py, &self.0)
+    }
+
+    /// Goes on from what `state` returned.
+    #[staticmethod]
+    fn restore(py: Python<'_>, state: &str) -> PyResult<Self> {
+        restored(py, state, crate::Tightener::is_sound).map(Self)
+    }
+}
