@@ -18,6 +18,7 @@ from sono.jobs import tighten as batch
 from sono.jobs.tighten import Job
 from sono.tightening import Progress, Run, Stopped
 from sono.tightening.plan import Stage
+from sono.tightening.trial import Target
 
 pytestmark = pytest.mark.usefixtures("slices")
 
@@ -27,7 +28,7 @@ QUICK = {"anneal_sweeps": 5000, "seed": 0}
 @pytest.fixture
 def job(folder: Path) -> Job:
     """A job with two targets and a checkpoint."""
-    outputs = {40: "40.txt", 60: "60.txt"}
+    outputs: dict[Target, str] = {40: "40.txt", 60: "60.txt"}
     return Job("3_1.txt", "knot", outputs, QUICK, trials=2, checkpoint=Path("knot.json"))
 
 

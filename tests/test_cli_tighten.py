@@ -624,3 +624,28 @@ def test_quiet_shows_no_progress(spawn: Spawn) -> None:
     assert os.read(ours, 1 << 16) == b"nothing"
     os.close(theirs)
     os.close(ours)
+
+
+def test_edges_of_a_length(folder: Path, sono: Sono) -> None:
+    line = ("tighten", "3_1.txt", "Hopf", "--dl", "0.3,0.5", *QUICK, "-o", "out/")
+    result = sono(*line, "--columns", "knot,n,dl,l_p,status,file", "--format", "jsonl")
+    assert result.exit_code == 0
+    rows = [json.loads(row) for row in result.stdout.splitlines()]
+    assert [row["file"] for row in rows] == [
+        f"out/{knot}.dl{dl}.txt" for knot in ("3_1", "Hopf") for dl in (0.5, 0.3)
+    ]
+    for row, dl in zip(rows, (0.5, 0.3, 0.5, 0.3), strict=True):
+        assert row["n"] == round(row["l_p"] / dl)
+        assert row["status"] == "tight"
+    again = sono(*line, "--columns", "knot,n,dl,l_p,status,file", "--format", "jsonl", "--resume")
+    assert again.stdout == result.stdout
+    for wrong in (("--dl", "0.3", "-n", "60"), ("--dl", "2"), ("--dl", "x"), ("--dl", "nan")):
+        assert sono("tighten", "3_1.txt", *wrong).exit_code == 2
+
+
+@pytest.mark.parametrize("method", ["sono", "polish"])
+def test_edges_of_a_length_by_one_engine(folder: Path, sono: Sono, method: str) -> None:
+    result = sono("tighten", "3_1.txt", "--dl", "0.4", "--method", method, "--columns", "n,l_p")
+    assert result.exit_code == 0
+    n, l_p = result.stdout.splitlines()[1].split("\t")
+    assert int(n) == round(float(l_p) / 0.4)

@@ -16,10 +16,13 @@ from sono.jobs.locks import Taken
 
 if TYPE_CHECKING:
     from sono.tightening import Method
+    from sono.tightening.trial import Target
 
 
-def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int]:
+def _numbers(ctx: click.Context, param: click.Parameter, value: str | None) -> "list[Target]":
     """Return numbers separated by commas in increasing order."""
+    if value is None:
+        return []
     from sono.tightening.settings import MOST
 
     try:
@@ -30,19 +33,39 @@ def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int
         raise click.BadParameter("a closed curve has at least 3 vertices")
     if numbers[-1] > MOST:
         raise click.BadParameter(f"{MOST:,} vertices are the most")
-    return numbers
+    return list(numbers)
+
+
+def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "list[Target]":
+    """Return lengths separated by commas in decreasing order."""
+    if value is None:
+        return []
+    from sono.tightening.settings import LEAST_DL, MOST_DL
+
+    try:
+        lengths = sorted({float(length) for length in value.split(",")}, reverse=True)
+    except ValueError:
+        raise click.BadParameter(f"{value!r}: give lengths such as 0.1 or 0.4,0.2,0.1") from None
+    if not all(LEAST_DL <= length <= MOST_DL for length in lengths):
+        raise click.BadParameter(f"edges are {LEAST_DL:g} to {MOST_DL:g} radii long")
+    return list(lengths)
 
 
 @click.command("tighten")
 @options.knots
 @click.option(
     "-n",
-    "targets",
+    "numbers",
     metavar="N[,N...]",
     callback=_numbers,
-    default="480",
-    show_default=True,
-    help="Vertices; a list gives a row each.",
+    help="Vertices; a list gives a row each.  [default: 480]",
+)
+@click.option(
+    "--dl",
+    "lengths",
+    metavar="DL[,DL...]",
+    callback=_lengths,
+    help="Or edges of this length, in radii, as far as N is a whole number.",
 )
 @click.option(
     "--method",
@@ -94,7 +117,8 @@ def _numbers(ctx: click.Context, param: click.Parameter, value: str) -> list[int
 @options.quiet
 def command(
     sources: list[str],
-    targets: list[int],
+    numbers: "list[Target]",
+    lengths: "list[Target]",
     method: "Method",
     trials: int,
     output: str | None,
@@ -111,7 +135,7 @@ def command(
     columns: list[str],
     quiet: bool,
 ) -> None:
-    """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N.
+    """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N or DL.
 
     The rope has radius 1. L_p, L_c and L_a are what the written vertices measure. Where a run is stopped by
     Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt, unless it is on a cluster.
@@ -123,6 +147,9 @@ def command(
     from sono.jobs.tighten import Job
 
     settings = _settings(seed, pairs)
+    if numbers and lengths:
+        raise click.UsageError("-n counts vertices, --dl says how long edges are; give one of them")
+    targets = numbers or lengths or [480]
     if force and resume:
         raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")
     if cluster and checkpoint:
@@ -138,12 +165,12 @@ def command(
             name,
             outputs,
             settings,
-            method,
-            trials,
-            _forces(contacts, outputs, name, len(sources)),
-            time_limit,
-            _checkpoint(checkpoint, name),
-            resume,
+            method=method,
+            trials=trials,
+            forces=_forces(contacts, outputs, name, len(sources)),
+            time_limit=time_limit,
+            checkpoint=_checkpoint(checkpoint, name),
+            resume=resume,
         )
         for source, name, outputs in _plan(sources, targets, output, fresh)
     ]
@@ -157,9 +184,9 @@ def command(
 
 
 def _plan(
-    sources: list[str], targets: list[int], output: str | None, fresh: bool
-) -> Iterator[tuple[str, str, dict[int, str]]]:
-    """Give the name of each source, and where its vertices for each n go."""
+    sources: list[str], targets: "list[Target]", output: str | None, fresh: bool
+) -> "Iterator[tuple[str, str, dict[Target, str]]]":
+    """Give the name of each source, and where its vertices for each target go."""
     names = [options.knot_name(source) for source in sources]
     if output and options.names_one_file(output):
         if len(sources) * len(targets) > 1:
@@ -171,12 +198,17 @@ def _plan(
         return
     for source, name in zip(sources, names, strict=True):
         files = (
-            {n: os.path.join(output or "", f"{stem}.n{n}.txt") for n in targets}
+            {target: os.path.join(output or "", f"{stem}.{_label(target)}.txt") for target in targets}
             for stem in chain([name], (f"{name}-{number}" for number in count(2)))
         )
         # Nobody chose the name "stdin", so a pipe that is run again takes the next one.
         free = (paths for paths in files if _is_free(list(paths.values())))
         yield source, name, next(free if source == "-" and fresh else files)
+
+
+def _label(target: "Target") -> str:
+    """Return what tells a target in the name of a file."""
+    return f"n{target}" if isinstance(target, int) else f"dl{target:g}"
 
 
 def _is_free(paths: list[str]) -> bool:
@@ -188,15 +220,18 @@ def _is_free(paths: list[str]) -> bool:
     return not any(map(os.path.exists, paths))
 
 
-def _forces(path: str | None, outputs: dict[int, str], name: str, sources: int) -> dict[int, str]:
-    """Say where the forces for each n go."""
+def _forces(path: str | None, outputs: "dict[Target, str]", name: str, sources: int) -> "dict[Target, str]":
+    """Say where the forces for each target go."""
     if path is None:
         return {}
     if not path:
         raise click.UsageError("--contacts needs the name of a file or folder/")
     if not options.names_one_file(path):
-        stems = {n: f"{name}.n{n}" if file == "-" else Path(file).stem for n, file in outputs.items()}
-        return {n: os.path.join(path, f"{stem}.contacts.tsv") for n, stem in stems.items()}
+        stems = {
+            target: f"{name}.{_label(target)}" if file == "-" else Path(file).stem
+            for target, file in outputs.items()
+        }
+        return {target: os.path.join(path, f"{stem}.contacts.tsv") for target, stem in stems.items()}
     if len(outputs) * sources > 1:
         raise click.UsageError("--contacts names one file, but there are several results; name a folder/")
     if (suffix := Path(path).suffix.lower()) not in ("", ".tsv", ".txt", ".dat"):

@@ -13,13 +13,14 @@ from sono.jobs.result import Result, as_row
 from sono.tables import Row
 from sono.tightening import Method
 from sono.tightening.settings import TRIALS, default_settings
+from sono.tightening.trial import Target
 
 
 @dataclass(frozen=True)
 class Order:
-    """Tighten the curve in `source` ("-" is standard input) at each n of `outputs`.
+    """Tighten the curve in `source` ("-" is standard input) to each target that is in `outputs`.
 
-    `name` is the curve's name in tables. `outputs` says where the vertices for each n go, and `forces` where
+    `name` is the curve's name in tables. `outputs` says where the vertices for each go, and `forces` where
     those between them, if they are wanted; "-" is standard output. `time_limit` is in seconds. `checkpoint`
     is the file that keeps the state of the run. With `resume` a run goes on from its checkpoint, and outputs
     that are there are not computed again.
@@ -27,11 +28,11 @@ class Order:
 
     source: str
     name: str
-    outputs: dict[int, str]
+    outputs: dict[Target, str]
     settings: dict[str, Any]
     method: Method = "both"
     trials: int = TRIALS
-    forces: dict[int, str] = field(default_factory=dict)
+    forces: dict[Target, str] = field(default_factory=dict)
     time_limit: float | None = None
     checkpoint: Path | None = None
     resume: bool = False
@@ -41,6 +42,11 @@ class Order:
         paths = [*self.outputs.values(), *self.forces.values()]
         outputs = [path for path in paths if not is_stream(path)]
         return [*outputs, os.fspath(self.checkpoint)] if self.checkpoint else outputs
+
+
+def shown(target: Target) -> str:
+    """Name a target to the user."""
+    return f"n = {target}" if isinstance(target, int) else f"dl = {target:g}"
 
 
 def rope_row(order: Order, output: str | None, measures: Measures, status: str, **more: Any) -> Row:

@@ -1,5 +1,6 @@
 """A tightening under way: its run, its checkpoint, and what it writes."""
 
+import json
 import math
 import os
 import time
@@ -17,10 +18,11 @@ from sono.formats.ropefile import SETTLED, STOPPED, STUCK, TIGHT, Header, Made
 from sono.invariants import fingerprint
 from sono.jobs import checkpoints, contacts
 from sono.jobs.curvefiles import free_name, header_of, located, measured, names_of_best
-from sono.jobs.order import Order, judged, made_from, rope_row
+from sono.jobs.order import Order, judged, made_from, rope_row, shown
 from sono.jobs.result import Result
 from sono.tables import Row
 from sono.tightening import KnotTypeError, Progress, Run, Stopped, Tight
+from sono.tightening.trial import Target
 
 KIND = "tightening"
 """What checkpoints of this module call themselves."""
@@ -44,14 +46,14 @@ PHYSICS = ("residual", "mu", "excess")
 class Task:
     """A job under way: its run, and the checkpoint that keeps it."""
 
-    def __init__(self, job: Order, file: VertexFile, todo: set[int]) -> None:
+    def __init__(self, job: Order, file: VertexFile, todo: set[Target]) -> None:
         """Begin, or go on from the checkpoint. Raises `FormatError`."""
         self.job = job
         self.file = file
         self.todo = todo
         self.identity = [made_from(job, file), *job.outputs]
         self.told: list[str] = []
-        self.failed: dict[int, str] = {}
+        self.failed: dict[Target, str] = {}
         self.run = self.restored() or self.begun()
         self.end = time.monotonic() + (job.time_limit or math.inf)
 
@@ -76,9 +78,9 @@ class Task:
                     raise trouble from error
                 yield self.out_of_reach(n, str(trouble))
             except PanicError as error:
-                yield self.out_of_reach(n, f"{self.job.name}: n = {n}: {_as_bug(error)}")
+                yield self.out_of_reach(n, f"{self.job.name}: {shown(n)}: {_as_bug(error)}")
             except KnotTypeError as error:
-                yield self.out_of_reach(n, f"{self.job.name}: n = {n}: {error}")
+                yield self.out_of_reach(n, f"{self.job.name}: {shown(n)}: {error}")
             else:
                 if n in self.todo:
                     reached = SETTLED if self.job.method == "sono" else TIGHT
@@ -103,8 +105,8 @@ class Task:
             with suppress(FormatError):  # a full disk may have room again before the run is stopped
                 self.save()
 
-    def out_of_reach(self, n: int, trouble: str) -> Result:
-        """Remember why there is no rope of n vertices."""
+    def out_of_reach(self, n: Target, trouble: str) -> Result:
+        """Remember why there is no rope of n vertices, or of such edges."""
         self.failed[n] = trouble
         return Result(None, trouble)
 
@@ -147,7 +149,7 @@ class Task:
             notes += [f"{trials} ended at {length} {hits}; the best was taken{lost}"]
         return notes
 
-    def deliver(self, n: int, tight: Tight, status: str) -> tuple[Row, str | None]:
+    def deliver(self, n: Target, tight: Tight, status: str) -> tuple[Row, str | None]:
         """Write what was asked for at n."""
         row, unwritten = self.deliver_to(self.job.outputs[n], tight, status)
         if unwritten is None and n in self.job.forces and tight.forces:
@@ -201,7 +203,7 @@ class Task:
         state = checkpoints.load(path, KIND)
         try:
             same = state["identity"] == self.identity
-            failed = {int(n): str(trouble) for n, trouble in state["failed"].items()}
+            failed = {json.loads(n): str(trouble) for n, trouble in state["failed"].items()}
             run = Run.restore(state["run"]) if same else None
         except (ValueError, LookupError, TypeError, AttributeError, PanicError) as error:
             raise FormatError(f"{path}: holds no state of a run ({error}); remove it") from error

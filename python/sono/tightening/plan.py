@@ -15,7 +15,7 @@ from sono._core import Polish, Tightener
 from sono.curve import Components, Measures, measure, packed, unpacked
 from sono.tightening.engines import Engine
 from sono.tightening.settings import TRIALS, Method, default_settings
-from sono.tightening.trial import COARSE, HOT, Recipe, Trial, coarsest
+from sono.tightening.trial import COARSE, HOT, Recipe, Target, Trial, aimed, coarsest
 
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 
@@ -43,16 +43,21 @@ HOPELESS = 1.3
 curve need differs by a few percent as a rule, and by a sixth at most as far as is known."""
 
 
+CLIMBS = 3
+"""Climbs that are made once more for a target that is an edge length."""
+
+
 @dataclass
 class Plan:
     """What has been found so far, and what is to be done for the first of the `targets`.
 
     `curve` is what the next rung begins with, and `start` the curve of all trials, which may have been
     `loosened`. While a shape is looked for there is a `trial`, and `rungs` are empty. `shape` is the best of
-    those found; `shapes` has the length of each, and `failed` says why other trials came to nothing.
+    those found; `shapes` has the length of each, and `failed` says why other trials came to nothing. `climbs`
+    counts those that were made once more for the sake of the edges.
     """
 
-    targets: list[int]
+    targets: list[Target]
     settings: dict[str, Any]
     method: Method = "both"
     trials: int = TRIALS
@@ -64,6 +69,7 @@ class Plan:
     shape: Components | None = None
     shapes: list[float] = field(default_factory=list)
     failed: list[str] = field(default_factory=list)
+    climbs: int = 0
 
     def __post_init__(self) -> None:
         """Begin with the first trial, or with the climb."""
@@ -78,6 +84,14 @@ class Plan:
     def rung(self) -> Rung:
         """The stage that comes next, and its number of vertices."""
         return (self.trial.stage, self.trial.n) if self.trial else self.rungs[0]
+
+    @property
+    def n(self) -> int:
+        """The number of vertices that the first target asks for, as far as is known."""
+        target = self.targets[0]
+        if isinstance(target, int):
+            return target
+        return aimed(target, measure(self.shape or self.curve).l_p) if self.trial else self.rungs[-1][1]
 
     @property
     def finds_shapes(self) -> bool:
@@ -140,13 +154,23 @@ class Plan:
         rungs = [(stage, n) for stage, n in state["rungs"]]
         return cls(**state | curves | {"trial": trial, "rungs": rungs})
 
+    def climb_again(self, engine: Engine) -> bool:
+        """Plan another climb if edges, which follow the rope's own length, are not as long as asked for."""
+        found = engine.status().best
+        aim = aimed(self.targets[0], found.l_p)
+        if self.climbs == CLIMBS or aim == found.n:
+            return False
+        self.curve, self.climbs = engine.best(), self.climbs + 1
+        self._climb()
+        return True
+
     def take_loosened(self, curve: Components) -> None:
         """Begin all further trials with a curve that is loosened."""
         self.start, self.loosened = curve, True
 
     def fail(self, error: Error, needed: float) -> None:
         """Do without the trial that failed, and would have `needed` so many vertices; or raise its error."""
-        hopeless = not self.shapes and needed > HOPELESS * self.targets[0]
+        hopeless = not self.shapes and needed > HOPELESS * self.n
         if self.method != "both" or not self.trial or hopeless:
             raise error
         self.failed.append(str(error))
@@ -157,6 +181,7 @@ class Plan:
     def next_target(self, reached: bool) -> None:
         """Turn from the first target, reached or out of reach, to the next."""
         self.targets.pop(0)
+        self.climbs = 0
         if not self.targets:
             return
         measures = measure(self.curve)
@@ -212,8 +237,9 @@ class Plan:
     def _anneal(self) -> None:
         """Plan SONO's rungs from the collapsed rope to the first target."""
         assert self.shape is not None
-        self.curve, n = self.shape, self.targets[0]
-        few = coarsest(n, measure(self.shape).l_p)
+        self.curve, length = self.shape, measure(self.shape).l_p
+        n = aimed(self.targets[0], length)
+        few = coarsest(n, length)
         finer = _doubled(few, n)
         self.rungs = [("anneal", few), *(("reanneal", level) for level in finer[:1])]
         self.rungs += [("settle", level) for level in finer or [few]]
@@ -221,7 +247,8 @@ class Plan:
     def _climb(self) -> None:
         """Plan the rungs from a tight rope to the first target."""
         between, last = cast("tuple[Stage, Stage]", _CLIMB[self.method])
-        *levels, n = _doubled(sum(map(len, self.curve)), self.targets[0]) or self.targets[:1]
+        aim = aimed(self.targets[0], measure(self.curve).l_p)
+        *levels, n = _doubled(sum(map(len, self.curve)), aim) or [aim]
         self.trial, self.rungs = None, [*((between, level) for level in levels), (last, n)]
 
 

@@ -5,7 +5,7 @@ show progress or stop.
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -19,7 +19,8 @@ from sono.tightening.coarser import coarser, unit
 from sono.tightening.engines import Engine, Seen, advanced, as_seen, rank, restored, saved
 from sono.tightening.plan import Plan
 from sono.tightening.results import KnotTypeError, Progress, Tight
-from sono.tightening.settings import MOST, TRIALS, Method, check_settings
+from sono.tightening.settings import LEAST_DL, MOST, MOST_DL, TRIALS, Method, check_settings
+from sono.tightening.trial import Target
 
 Done = TypeVar("Done")
 
@@ -46,20 +47,19 @@ class Run:
     def __init__(
         self,
         curve: Components,
-        targets: list[int],
+        targets: Sequence[Target],
         settings: dict[str, Any],
         method: Method = "both",
         trials: int = TRIALS,
     ) -> None:
-        """Plan to tighten any embedded closed curve, at any scale, at each of these n, in increasing order.
+        """Plan to tighten any embedded closed curve, at any scale, to each target, coarse ones first.
 
-        They count the vertices of all components together. Raises `ValueError` for a wrong target, method or
-        setting.
+        An int n counts the vertices of all components together, a float is an edge length in radii. Raises
+        `ValueError` for a wrong target, method or setting.
         """
-        targets = sorted(set(targets))
         _check(curve, targets, method, trials)
         check_settings(settings)
-        self.plan = Plan(targets, settings, method, trials, curve)
+        self.plan = Plan(coarse_first(targets), settings, method, trials, curve)
         self.type: Fingerprint | None = None
         self.engine: Engine | None = None
         self.rival: Polish | None = None
@@ -69,8 +69,8 @@ class Run:
         self.seen: Seen | None = None
 
     @property
-    def targets(self) -> list[int]:
-        """The numbers of vertices that are still wanted."""
+    def targets(self) -> list[Target]:
+        """The numbers of vertices, or edge lengths, that are still wanted."""
         return self.plan.targets
 
     @property
@@ -97,11 +97,14 @@ class Run:
                 continue
             if not self.plan.is_last:
                 self._leave()
-            elif self._is_over():
-                return self._ended(self._better(), look)
-            else:
+            elif not self._is_over():
                 self.rival, self.engine = cast("Polish", self._better()), None
                 self.offset += 1
+            elif self.plan.climb_again(better := self._better()):
+                self._count(better)
+                self.engine, self.offset = None, 0
+            else:
+                return self._ended(better, look)
 
     def next_target(self) -> None:
         """Turn from the first target, reached or out of reach, to the next."""
@@ -123,7 +126,7 @@ class Run:
             curve = plan.shape  # In the middle of another trial the best shape so far is better.
         elif not self._has_type(curve):
             curve = plan.curve
-        curve, measures = unit(coarser(curve, plan.targets[0]))
+        curve, measures = unit(coarser(curve, plan.n))
         return replace(self._tight(status, curve, measures), converged=False)
 
     @property
@@ -196,7 +199,7 @@ class Run:
         stage, n = plan.rung
         status = self.seen and self.seen[0]
         n = n or (status.best.n if status else sum(map(len, plan.curve)))
-        watch(Progress(stage, n, plan.targets[0], plan.tried + 1, status))
+        watch(Progress(stage, n, plan.n, plan.tried + 1, status))
 
     def _check_type(self, look: Callable[[], None]) -> None:
         """Compare what a rung has ended in with the curve that was given."""
@@ -221,7 +224,7 @@ class Run:
         if not isinstance(self.engine, Polish):
             return True
         stuck = self.engine.status().outcome != "tight"
-        n = self.plan.targets[0]
+        n = self.plan.n
         several = (n <= OFFSETS_TO or stuck) and sum(map(len, self.plan.curve)) != n
         return self.offset + 1 >= (OFFSETS if several else 1)
 
@@ -239,12 +242,16 @@ class Run:
         """Take over what the rung has reached."""
         if self.engine is None:
             return
-        for kind in ("sweeps", "factorisations"):
-            self.work[kind] += getattr(self.engine.status(), kind, 0)
+        self._count(self.engine)
         if isinstance(self.engine, Collapse) and (loosened := self.engine.loosened()):
             self.plan.take_loosened(loosened)  # once for all trials
         self.plan.take(self.engine)
         self.engine = None
+
+    def _count(self, engine: Engine) -> None:
+        """Add up the work of an engine that is left."""
+        for kind in ("sweeps", "factorisations"):
+            self.work[kind] += getattr(engine.status(), kind, 0)
 
     def _fail(self, error: CurveError | PanicError | KnotTypeError) -> None:
         """Do without the trial, or the offset, that failed; raise its error where there is nothing else."""
@@ -289,15 +296,24 @@ class Run:
 _STATE = {"plan", "type", "engine", "rival", "offset", "work"}
 
 
-def _check(curve: Components, targets: list[int], method: str, trials: int) -> None:
+def coarse_first(targets: Sequence[Target]) -> list[Target]:
+    """Put targets in order, each of them once."""
+    return sorted(set(targets), key=lambda target: target if isinstance(target, int) else -target)
+
+
+def _check(curve: Components, targets: Sequence[Target], method: str, trials: int) -> None:
     """Refuse what no run could do, before anything is computed."""
-    if targets and targets[-1] > MOST:
-        raise ValueError(f"n = {targets[-1]} is too large; {MOST:,} vertices are the most")
     least = 3 * len(curve)
-    if targets and targets[0] < least:
-        raise ValueError(
-            f"n = {targets[0]} is too small; 3 vertices for each component make {least} at least"
-        )
+    for target in targets:
+        if not isinstance(target, int):
+            if not LEAST_DL <= target <= MOST_DL:
+                raise ValueError(f"dl = {target} is no edge length from {LEAST_DL:g} to {MOST_DL:g} radii")
+        elif target > MOST:
+            raise ValueError(f"n = {target} is too large; {MOST:,} vertices are the most")
+        elif target < least:
+            raise ValueError(
+                f"n = {target} is too small; 3 vertices for each component make {least} at least"
+            )
     if method not in get_args(Method):
         raise ValueError(f"unknown method {method!r}; the methods are: {', '.join(get_args(Method))}")
     if trials < 1:

@@ -14,6 +14,9 @@ Method = Literal["both", "sono", "polish"]
 MOST = 500_000
 """The largest n; the polish then takes 1 GB or more."""
 
+LEAST_DL, MOST_DL = 0.01, 1.0
+"""Edge lengths that may be asked for, in radii."""
+
 TRIALS = 8
 """Trials of a run, unless the first few agree."""
 

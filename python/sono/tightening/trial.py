@@ -11,6 +11,9 @@ from sono._core import Collapse, CurveError, Polish, Tightener
 from sono.curve import Components
 from sono.tightening.engines import Engine
 
+Target = int | float
+"""What a rope is to have: so many vertices, an int, or edges of this length in radii, a float."""
+
 COARSE = 0.7
 """Edges of a shape as it is found are at most so long, and at least half of it, where n allows; in radii."""
 
@@ -26,15 +29,16 @@ class Recipe:
     """How a trial is made.
 
     `collapse` and `anneal` are the settings of these stages; beads of the anneal lie `edge` radii apart, as
-    far as `n` has so many. The shape has n vertices, halved as long as its edges stay below `COARSE`; it has
-    edges of `TRIAL_EDGE` where n is None, and is polished only as far as is worth refining.
+    far as the shape has so many. That has the vertices of the `target`, halved as long as its edges stay
+    below `COARSE`; it has edges of `TRIAL_EDGE` where there is no target, and is polished only as far as is
+    worth refining.
     """
 
     collapse: dict[str, Any]
     anneal: dict[str, Any]
     seed: int
     edge: float
-    n: int | None = None
+    target: Target | None = None
 
 
 @dataclass
@@ -57,7 +61,7 @@ class Trial:
         if self.stage == "collapse":
             return Collapse(self.curve, self.loosened, json.dumps(recipe.collapse))
         if self.stage == "trial":
-            return Polish(self.curve, self.n, recipe.n is None, recipe.seed)
+            return Polish(self.curve, self.n, recipe.target is None, recipe.seed)
         try:
             return Tightener(self.curve, "anneal", self.n, json.dumps(recipe.anneal))
         except CurveError:
@@ -72,8 +76,8 @@ class Trial:
         self.curve = engine.best()
         if self.stage == "collapse":
             self.n = max(int(length / recipe.edge), 3 * len(self.curve))
-            if recipe.n is not None:
-                self.few = coarsest(recipe.n, length)
+            if recipe.target is not None:
+                self.few = max(coarsest(aimed(recipe.target, length), length), 3 * len(self.curve))
                 self.n = min(self.n, self.few)
             self.stage = "anneal"
         elif self.stage == "anneal":
@@ -81,6 +85,11 @@ class Trial:
         else:
             return False
         return True
+
+
+def aimed(target: Target, length: float) -> int:
+    """Return the number of vertices that a rope of this length has then."""
+    return target if isinstance(target, int) else max(round(length / target), 3)
 
 
 def coarsest(n: int, length: float) -> int:
