@@ -9,6 +9,8 @@ pub const LONGEST_EDGE: f64 = 2.3;
 /// Shortest edge that the polish allows, as a share of the longest that there may be: see
 /// [`crate::sono::passage`] for why.
 pub const SHORTEST_EDGE: f64 = 0.9;
+/// From this edge length on the index rule, not the thickness of the rope, limits how sharp it turns.
+pub const COARSE: f64 = 1.235;
 
 /// Least index distance at which beads must not overlap: ceil(pi R_c/dl - 1).
 ///
@@ -21,9 +23,6 @@ pub const SHORTEST_EDGE: f64 = 0.9;
 pub fn least_index_distance(dl: f64) -> usize {
     (PI * (1. - 0.25 * dl * dl).max(0.).sqrt() / dl - 1.).ceil().max(2.) as usize
 }
-
-/// From this edge length on the index rule, not the thickness of the rope, limits how sharp it turns.
-pub const COARSE: f64 = 1.235;
 
 /// Largest length of a second difference of the vertices, v_(i-1) - 2 v_i + v_(i+1), for edges `dl`.
 ///

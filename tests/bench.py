@@ -41,14 +41,12 @@ def levels() -> None:
     while n <= 15_360:
         start = time.perf_counter()
         polish = Polish(curve, n, False, 0)
-        while polish.advance(1).outcome == "running":
+        while polish.advance(1)["outcome"] == "running":
             pass
         seconds = time.perf_counter() - start
         status, curve = polish.status(), polish.best()
-        each = 1e3 * seconds / status.factorisations
-        figures = (
-            f"{status.best.l_p:.8f}\t{status.best.l_c:.8f}\t{status.iterations}\t{status.factorisations}"
-        )
+        each = 1e3 * seconds / status["factorisations"]
+        figures = f"{status['best']['l_p']:.8f}\t{status['best']['l_c']:.8f}\t{status['iterations']}\t{status['factorisations']}"
         print(f"{n}\t{figures}\t{seconds:.2f}\t{each:.2f}", flush=True)
         n *= 2
 
@@ -60,9 +58,9 @@ def sweeps() -> None:
     print("n\tns a sweep and vertex\tns a measurement and vertex")
     for n in (480, 1920, 7680, 30_000):
         tightener = Tightener(curve, "settle", n, endless)
-        before = tightener.advance(1).sweeps
+        before = tightener.advance(1)["sweeps"]
         start = time.perf_counter()
-        sweeps = tightener.advance(2).sweeps - before
+        sweeps = tightener.advance(2)["sweeps"] - before
         swept = time.perf_counter()
         measures = 0
         fine = tightener.best()

@@ -127,7 +127,8 @@ def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -
     stages = set()
 
     def look(progress: Progress) -> None:
-        stages.add(checkpoints.load(Path("knot.json"), task.KIND)["run"]["rungs"][0][0])
+        plan = checkpoints.load(Path("knot.json"), task.KIND)["run"]["plan"]
+        stages.add(plan["trial"]["stage"] if plan["trial"] else plan["rungs"][0][0])
 
     list(batch.run(job, look))
     assert {"collapse", "anneal", "trial", "polish"} <= stages

@@ -23,7 +23,7 @@ ROOTS = [np.exp(2j * np.pi / k) for k in ORDERS]
 
 def collapsed(vertices: Floats) -> Collapse:
     collapse = Collapse([vertices], False, "{}")
-    while collapse.advance(0.1).outcome == "running":
+    while collapse.advance(0.1)["outcome"] == "running":
         pass
     return collapse
 
@@ -102,7 +102,7 @@ def test_links_keep_their_components_apart() -> None:
     small, large = entangled(12, 1), 1e5 * entangled(12, 2)
     for link in ([small, large + 3e6], [small, large + small.mean(axis=0)], [large, small + 1, 2 - small]):
         collapse = Collapse(link, False, "{}")
-        while collapse.advance(0.1).outcome == "running":
+        while collapse.advance(0.1)["outcome"] == "running":
             pass
         assert fingerprint(collapse.best()) == fingerprint(link)
 
@@ -110,7 +110,7 @@ def test_links_keep_their_components_apart() -> None:
 def test_a_saved_collapse_goes_on_as_if_it_had_never_stopped() -> None:
     def through(curve: Components, saved: set[int]) -> Components:
         collapse, slices = Collapse(curve, False, "{}"), 0
-        while collapse.advance(1e-3).outcome == "running":
+        while collapse.advance(1e-3)["outcome"] == "running":
             slices += 1
             if slices in saved:
                 collapse = Collapse.restore(collapse.state())

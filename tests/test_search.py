@@ -20,7 +20,7 @@ from sono.searching import minima, search, trials
 from sono.searching.minima import Shape, radii_of_gyration
 from sono.searching.search import Search
 from sono.searching.trials import Source, attempt, finish, refine, reseat
-from sono.tightening import Stopped, plan, trial
+from sono.tightening import Stopped, engines, plan, trial
 
 SHARE = trials.GENTLE
 """The share of gentle anneals, as it is outside of these tests."""
@@ -248,7 +248,7 @@ def test_what_stops_a_polish_is_not_swallowed() -> None:
 
 
 def test_what_watches_can_stop_a_trial(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trials, "SLICE", 1e-4)
+    monkeypatch.setattr(engines, "SLICE", 1e-4)
 
     def stop() -> None:
         raise RuntimeError("enough")

@@ -1,10 +1,13 @@
-"""The compiled core; `sono.tightening.run` is its only user.
+"""The compiled core: arrays in, arrays and plain values out, the interpreter released while it works.
 
-Components are a list of (n_i, 3) float64 arrays. Lengths are in the unit of the vertices.
+Components are a list of (n_i, 3) float64 arrays, one for each closed component, vertex after vertex.
+Lengths are in the unit of the vertices, unless R = 1 is said: then the rope has radius 1. Ropelength is
+length over radius. A curve that cannot be used raises `CurveError`, any other bad argument `ValueError`,
+a bug of the core `PanicError`.
 """
 
 from collections.abc import Sequence
-from typing import Literal, TypeAlias, final
+from typing import Literal, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +15,8 @@ from numpy.typing import NDArray
 __all__ = [
     "Collapse",
     "CurveError",
-    "Measures",
     "PanicError",
     "Polish",
-    "PolishStatus",
-    "Status",
     "Tightener",
     "balance",
     "crossings",
@@ -31,15 +31,20 @@ __all__ = [
 _Curve: TypeAlias = Sequence[NDArray[np.float64]]
 _Components: TypeAlias = list[NDArray[np.float64]]
 _Outcome: TypeAlias = Literal["running", "tight", "stuck"]
+_Stage: TypeAlias = Literal["loosen", "collapse", "anneal", "reanneal", "settle"]
 _Forces: TypeAlias = tuple[
     NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], float
 ]
-_Stage: TypeAlias = Literal["loosen", "collapse", "anneal", "reanneal", "settle"]
+"""Of a rope of radius 1 and n beads with k contacts, in units of its mean tension.
+
+Tension of the edge after each bead (n,), couple of each bead (n,), beads in contact (k, 2), with which
+force each pair presses (k,), and the largest coordinate of what is left over on a bead.
+"""
 
 class CurveError(ValueError):
     """A curve that cannot be used, and the places: (component, vertex), vertex None for a whole component.
 
-    `needed` is the least n that will do, None where no n will.
+    Both count from 0. `needed` is the least n that will do, None where no n will.
     """
 
     places: Sequence[tuple[int, int | None]]
@@ -48,76 +53,106 @@ class CurveError(ValueError):
 class PanicError(RuntimeError):
     """The core came upon a bug of its own. What it worked on is lost, and nothing else."""
 
-@final
-class Measures:
-    """What a curve measures; see the README's glossary. `l_*` are ropelengths, lengths over the radius."""
+class MeasuresDict(TypedDict):
+    """What a curve measures, in its own unit; the type has no class at run time.
 
-    @property
-    def n(self) -> int: ...
-    @property
-    def components(self) -> int: ...
-    @property
-    def dl(self) -> float: ...
-    @property
-    def dispersion(self) -> float: ...
-    @property
-    def min_rad(self) -> float: ...
-    @property
-    def sr(self) -> float: ...
-    @property
-    def r_s(self) -> float: ...
-    @property
-    def r_c(self) -> float | None: ...
-    @property
-    def length(self) -> float: ...
-    @property
-    def inscribed_length(self) -> float: ...
-    @property
-    def l_p(self) -> float: ...
-    @property
-    def l_c(self) -> float | None: ...
-    @property
-    def l_a(self) -> float | None: ...
+    Baranska, Pieranski, Rawdon, "Ropelength of tight polygonal knots", section 2.
+    """
 
-@final
-class Status:
-    """Where a `Tightener` stands; `overlap` and `dispersion` are those the last sweep met, R = 1."""
+    n: int
+    """Vertices."""
+    components: int
+    dl: float
+    """Mean edge length."""
+    dispersion: float
+    """Largest |s_i/dl - 1|, dl being the mean edge of the component."""
+    min_rad: float
+    """Least radius of the inscribed arcs, MinRad."""
+    sr: float
+    """Half the least distance of vertices that are no neighbours along the curve, SR; inf without any."""
+    r_s: float
+    """Sphere thickness radius, the smaller of what MinRad and SR allow."""
+    r_c: float | None
+    """Radius of the smooth tube around the inscribed knot, None where R_s <= dl/sqrt 2."""
+    length: float
+    inscribed_length: float
+    """Length of the inscribed knot K_P."""
+    l_p: float
+    """Raw polygonal ropelength, length/R_s."""
+    l_c: float | None
+    """Inscribed ropelength, a bound: the length of K_P over R_c."""
+    l_a: float | None
+    """Weighted ropelength (4 L_p + L_c)/5, an estimate."""
 
-    @property
-    def outcome(self) -> _Outcome: ...
-    @property
-    def stage(self) -> _Stage: ...
-    @property
-    def progress(self) -> float: ...
-    @property
-    def sweeps(self) -> int: ...
-    @property
-    def undone(self) -> int: ...
-    @property
-    def epsilon(self) -> float: ...
-    @property
-    def overlap(self) -> float: ...
-    @property
-    def dispersion(self) -> float: ...
-    @property
-    def best(self) -> Measures: ...
+class StatusDict(TypedDict):
+    """Where SONO stands; the type has no class at run time."""
+
+    outcome: _Outcome
+    stage: _Stage
+    progress: float
+    """Share of the planned sweeps done; 0 while loosening and collapsing."""
+    sweeps: int
+    undone: int
+    """How often sweeps were undone because a strand might have passed another."""
+    epsilon: float
+    """Overshoot of RO at this moment, R = 1."""
+    overlap: float
+    """Largest overlap of two beads that the last sweep met, R = 1."""
+    dispersion: float
+    """Largest |dl/s_i - 1| that it met."""
+    best: MeasuresDict
+    """Of the best state so far, R_s = 1."""
+
+class PolishStatusDict(TypedDict):
+    """Where a `Polish` stands; the type has no class at run time."""
+
+    outcome: _Outcome
+    progress: float
+    """From 0 to 1 with the logarithm of mu."""
+    iterations: int
+    """Newton steps."""
+    factorisations: int
+    residual: float
+    """Largest force left over on a bead or, on average, on an edge; tension is about 1."""
+    mu: float
+    """Barrier parameter: each constraint's product of multiplier and slack."""
+    excess: float
+    """Sum of these products: in balance, by how much the length exceeds the local minimum, R = 1."""
+    best: MeasuresDict
+    """Of the best state so far, R_s = 1."""
 
 @final
 class Collapse:
     """From any embedded curve to a jammed rope; a thin one is loosened first, unless it was before."""
 
-    def __new__(cls, components: _Curve, loosened: bool, settings: str) -> Collapse: ...
-    def advance(self, seconds: float) -> Status: ...
-    def status(self) -> Status: ...
-    def loosened(self) -> _Components | None: ...
-    def best(self) -> _Components: ...
-    def state(self) -> str: ...
+    def __new__(cls, components: _Curve, loosened: bool, settings: str) -> Collapse:
+        """Begin; `loosened` says that the curve was loosened before, `settings` is JSON.
+
+        Raises `CurveError` where edges meet or, if `loosened`, strands are too close for a rope.
+        """
+
+    def advance(self, seconds: float) -> StatusDict:
+        """Work for about so long, unless done before. Raises `CurveError` where it cannot be loosened."""
+
+    def status(self) -> StatusDict:
+        """Return where it stands."""
+
+    def loosened(self) -> _Components | None:
+        """Return the loosened curve, None unless it had to be loosened."""
+
+    def best(self) -> _Components:
+        """Return the shortest rope so far, its R_s = 1, its centre at the origin."""
+
+    def state(self) -> str:
+        """Return all that is needed to go on later, as JSON."""
+
     @staticmethod
-    def restore(state: str) -> Collapse: ...
+    def restore(state: str) -> Collapse:
+        """Go on from a state. Raises `ValueError` if it is none."""
 
 @final
 class Tightener:
-    """One stage of SONO on n vertices in all; `settings` is JSON."""
+    """One stage of SONO on a rope."""
 
     def __new__(
         cls,
@@ -125,55 +160,101 @@ class Tightener:
         stage: Literal["anneal", "reanneal", "settle"],
         n: int,
         settings: str,
-    ) -> Tightener: ...
-    def advance(self, seconds: float) -> Status: ...
-    def status(self) -> Status: ...
-    def best(self) -> _Components: ...
-    def state(self) -> str: ...
+    ) -> Tightener:
+        """Begin with a rope, of any unit, on `n` vertices in all; `settings` is JSON.
+
+        Raises `CurveError` where `n` is too small.
+        """
+
+    def advance(self, seconds: float) -> StatusDict:
+        """Work for about so long, unless done before."""
+
+    def status(self) -> StatusDict:
+        """Return where it stands."""
+
+    def best(self) -> _Components:
+        """Return the best rope so far, its R_s = 1, its centre at the origin."""
+
+    def state(self) -> str:
+        """Return all that is needed to go on later, as JSON."""
+
     @staticmethod
-    def restore(state: str) -> Tightener: ...
-
-@final
-class PolishStatus:
-    """Where a `Polish` stands; `residual` is a force, tension being 1."""
-
-    @property
-    def outcome(self) -> _Outcome: ...
-    @property
-    def progress(self) -> float: ...
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def factorisations(self) -> int: ...
-    @property
-    def residual(self) -> float: ...
-    @property
-    def mu(self) -> float: ...
-    @property
-    def excess(self) -> float: ...
-    @property
-    def best(self) -> Measures: ...
+    def restore(state: str) -> Tightener:
+        """Go on from a state. Raises `ValueError` if it is none."""
 
 @final
 class Polish:
-    """The polish of a rope on n vertices in all; if only `passing`, it ends when that is worth refining."""
+    """The polish of a rope."""
 
-    def __new__(cls, components: _Curve, n: int, passing: bool, seed: int) -> Polish: ...
-    def advance(self, seconds: float) -> PolishStatus: ...
-    def status(self) -> PolishStatus: ...
-    def best(self) -> _Components: ...
-    def forces(self) -> _Forces: ...
-    def state(self) -> str: ...
+    def __new__(cls, components: _Curve, n: int, passing: bool, seed: int) -> Polish:
+        """Begin with any embedded curve, on `n` vertices in all.
+
+        If it is only `passing` this n, it ends when the rope is worth refining; `seed` places the first
+        vertex. Raises `CurveError` where edges meet, strands are too close, or `n` is too small.
+        """
+
+    def advance(self, seconds: float) -> PolishStatusDict:
+        """Work for about so long, unless done before."""
+
+    def status(self) -> PolishStatusDict:
+        """Return where it stands."""
+
+    def best(self) -> _Components:
+        """Return the best rope so far, its R_s = 1, its centre at the origin."""
+
+    def forces(self) -> _Forces:
+        """Return the forces in the rope as it is."""
+
+    def state(self) -> str:
+        """Return all that is needed to go on later, as JSON."""
+
     @staticmethod
-    def restore(state: str) -> Polish: ...
+    def restore(state: str) -> Polish:
+        """Go on from a state. Raises `ValueError` if it is none."""
 
-def balance(components: _Curve) -> _Forces: ...
-def measure(components: _Curve) -> Measures: ...
-def refine(components: _Curve, n: int) -> _Components: ...
-def default_settings() -> str: ...
+def balance(components: _Curve) -> _Forces:
+    """Return the forces that come nearest to balance on a curve, by non-negative least squares.
+
+    The curve is scaled to R_s = 1; the residual is 0 for a critical point of length. Raises `CurveError`
+    where edges meet.
+    """
+
+def measure(components: _Curve) -> MeasuresDict:
+    """Return what a curve measures. Raises `CurveError` where edges meet."""
+
+def refine(components: _Curve, n: int) -> _Components:
+    """Return the inscribed knot at `n` vertices, all chords of a component equal.
+
+    Raises `CurveError` for fewer than 3 vertices a component.
+    """
+
+def default_settings() -> str:
+    """Return the settings that SONO has unless told otherwise, as JSON."""
+
 def crossings(
     components: _Curve, most: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]: ...
-def determinant(n: int, entries: list[tuple[int, int, int]]) -> int: ...
-def loosen(components: _Curve) -> _Components: ...
-def simplify(components: _Curve) -> _Components: ...
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Return the k crossings seen along the z axis from above; of more than `most`, only some.
+
+    Three arrays (k,): the places of the upper and of the lower strand, in edges from the first vertex,
+    and whether the crossing is right-handed. No two vertices may be seen in one place, as after
+    `simplify`.
+    """
+
+def determinant(n: int, entries: list[tuple[int, int, int]]) -> int:
+    """Return the determinant of an n x n matrix modulo the prime 2147482951.
+
+    Entries are (row, column, value >= 0); those in one place add up. Raises `ValueError` for one outside.
+    """
+
+def loosen(components: _Curve) -> _Components:
+    """Return a curve of the same type that holds a thick rope, by exact isotopy.
+
+    Raises `CurveError` where edges meet, or over 20,000 crossings are left.
+    """
+
+def simplify(components: _Curve) -> _Components:
+    """Return the same curve with as few vertices as triangle moves leave, by exact isotopy.
+
+    Raises `CurveError` where edges meet.
+    """

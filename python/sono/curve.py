@@ -6,8 +6,8 @@ RADIUS of the rope. May import nothing of sono but the core, and what results ha
 
 import base64
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, TypeAlias, cast, overload
+from dataclasses import dataclass
+from typing import TypeAlias, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -117,11 +117,6 @@ class Measures(Record):
         """L_a, or L_p where there is none: what ropes of one edge length are compared by."""
         return self.l_a or self.l_p
 
-    @classmethod
-    def of(cls, found: Any) -> "Measures":
-        """Take over what the core has measured."""
-        return cls(*(getattr(found, field.name) for field in fields(cls)))
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Forces(Record):
@@ -175,7 +170,7 @@ def measure(vertices: CurveLike) -> Measures:
     >>> m.n, m.dl, round(m.min_rad, 6), round(m.l_p, 6)
     (4, 2.0, 1.0, 8.0)
     """
-    return Measures.of(_core.measure(as_components(vertices)))
+    return Measures(**_core.measure(as_components(vertices)))
 
 
 def forces(vertices: CurveLike) -> Forces:

@@ -1,4 +1,5 @@
 //! From any embedded polygon, however thin, to a loose one of the same type that holds a thick rope.
+//! Imports `geometry` and `invariants`.
 //!
 //! 1. Vertices are removed as long as triangle moves allow it (the KMT reduction: K. Koniaris and
 //!    M. Muthukumar, Phys. Rev. Lett. 66 (1991) 2211), the smallest triangles first, so that the
@@ -11,7 +12,7 @@
 //! Every move is an isotopy, proved exactly ([`crate::geometry::sticks`]); steps are as long as the distance
 //! of strands, so that a gap of 1e-6 of the size opens in some tens of sweeps.
 //!
-//! `reduction` does 1, `repulsion` 2, and the loop is here. Imports `geometry` and `invariants`.
+//! `reduction` does 1, `repulsion` 2, and the loop is here.
 //!
 //! ```
 //! // A square on a stalk of length 1,000,000.

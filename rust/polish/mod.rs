@@ -1,4 +1,9 @@
-//! The polish: a primal-dual interior-point method on the bead rope.
+//! The polish: a primal-dual interior-point method on the bead rope. Imports `beads`, `resample` and
+//! what these import; nothing of `sono`.
+//!
+//! `direction, system <- term <- problem <- barrier, matrix <- newton, least_squares <- forces`; on all
+//! of them the loop here, how it begins (`start`), what is near (`surroundings`), and how far a step
+//! goes (`line_search`).
 //!
 //! SONO converges linearly; a tight rope solves a sparse smooth optimisation problem
 //! (`problem`), and Newton's method reaches the exact state in some tens of factorisations. Every
@@ -11,11 +16,6 @@
 //! end to 1e-11. Lengths then exceed the local minimum by about (number of constraints) mu.
 //!
 //! The multipliers are forces: with f the rope's length, its tension is 1 on average.
-//!
-//! The folder's files depend on each other one way: `direction, system <- term <- problem <- barrier,
-//! matrix <- newton, least_squares <- forces`, and the loop here, how it begins (`start`), what is
-//! near (`surroundings`) and how far it goes (`line_search`) on all of them. It imports `beads`,
-//! `resample` and what these import; nothing of `sono`.
 //!
 //! Methods of this kind: J. Nocedal, S. Wright, "Numerical Optimization", chapter 19.
 

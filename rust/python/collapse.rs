@@ -3,9 +3,10 @@
 use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
+use super::dict::Dict;
 use super::engine::{budget, restored, settings_from_json, state};
 use super::errors::{released, tried};
-use super::tightener::Status;
+use super::tightener::status;
 
 /// From any embedded curve to a jammed rope; a thin one is loosened first, unless it was before.
 #[pyclass(module = "sono._core")]
@@ -26,15 +27,14 @@ impl Collapse {
     }
 
     /// Works for about so many seconds, unless done before, with the interpreter released.
-    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
+    fn advance<'py>(&mut self, py: Python<'py>, seconds: f64) -> PyResult<Dict<'py>> {
         let budget = budget(seconds)?;
-        let status = tried(py, || self.0.advance(budget))?;
-        Status::new(py, &status)
+        status(py, &tried(py, || self.0.advance(budget))?)
     }
 
     /// Where it stands.
-    fn status(&self, py: Python<'_>) -> PyResult<Status> {
-        Status::new(py, &released(py, || self.0.status())?)
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
+        status(py, &released(py, || self.0.status())?)
     }
 
     /// The loosened curve, if it was loosened.

@@ -3,6 +3,7 @@
 
 mod collapse;
 mod curve;
+mod dict;
 mod engine;
 mod errors;
 mod forces;
@@ -31,11 +32,11 @@ mod _core {
     #[pymodule_export]
     use super::invariants::{crossings, determinant};
     #[pymodule_export]
-    use super::measures::{Measures, measure};
+    use super::measures::measure;
     #[pymodule_export]
-    use super::polish::{Polish, PolishStatus};
+    use super::polish::Polish;
     #[pymodule_export]
-    use super::tightener::{Status, Tightener};
+    use super::tightener::Tightener;
 
     /// What an error has that nobody explained further.
     #[pymodule_init]

@@ -3,39 +3,19 @@
 use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
+use super::dict::{Dict, dict};
 use super::engine::{budget, name_of, restored, state};
 use super::errors::{released, tried};
 use super::forces::{ForceArrays, force_arrays};
-use super::measures::Measures;
+use super::measures::measures;
+use crate::polish::Status;
 
 /// Where a `Polish` stands; `residual` is a force, tension being 1.
-#[pyclass(frozen, get_all, module = "sono._core")]
-pub struct PolishStatus {
-    outcome: &'static str,
-    progress: f64,
-    iterations: u64,
-    factorisations: u64,
-    residual: f64,
-    mu: f64,
-    excess: f64,
-    best: Py<Measures>,
-}
-
-impl PolishStatus {
-    fn new(py: Python<'_>, status: &crate::polish::Status) -> PyResult<Self> {
-        let &crate::polish::Status {
-            outcome,
-            progress,
-            iterations,
-            factorisations,
-            residual,
-            mu,
-            excess,
-            best,
-        } = status;
-        let (outcome, best) = (name_of(outcome), Py::new(py, Measures::from(best))?);
-        Ok(Self { outcome, progress, iterations, factorisations, residual, mu, excess, best })
-    }
+fn status<'py>(py: Python<'py>, of: &Status) -> PyResult<Dict<'py>> {
+    Ok(dict!(
+        py, of: outcome = name_of(of.outcome), progress, iterations, factorisations, residual, mu,
+        excess, best = measures(py, &of.best)?,
+    ))
 }
 
 /// The polish of a rope on n vertices in all; if only `passing`, it ends when that is worth refining.
@@ -57,15 +37,14 @@ impl Polish {
     }
 
     /// Works for about so many seconds, unless done before, with the interpreter released.
-    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<PolishStatus> {
+    fn advance<'py>(&mut self, py: Python<'py>, seconds: f64) -> PyResult<Dict<'py>> {
         let budget = budget(seconds)?;
-        let status = released(py, || self.0.advance(budget))?;
-        PolishStatus::new(py, &status)
+        status(py, &released(py, || self.0.advance(budget))?)
     }
 
     /// Where it stands.
-    fn status(&self, py: Python<'_>) -> PyResult<PolishStatus> {
-        PolishStatus::new(py, &released(py, || self.0.status())?)
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
+        status(py, &released(py, || self.0.status())?)
     }
 
     /// The best rope so far, its R_s = 1, its centre at the origin.

@@ -4,44 +4,28 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
+use super::dict::{Dict, dict};
 use super::engine::{budget, name_of, restored, settings_from_json, state};
 use super::errors::{released, tried};
-use super::measures::Measures;
-use crate::{Curve, Settings, Stage};
+use super::measures::measures;
+use crate::{Curve, Settings, Stage, Status};
 
-/// Where a `Tightener` stands; `overlap` and `dispersion` are those the last sweep met, R = 1.
-#[pyclass(frozen, get_all, module = "sono._core")]
-pub struct Status {
-    outcome: &'static str,
-    stage: &'static str,
-    progress: f64,
-    sweeps: u64,
-    undone: u64,
-    epsilon: f64,
-    overlap: f64,
-    dispersion: f64,
-    best: Py<Measures>,
+/// Where SONO stands; `overlap` and `dispersion` are those the last sweep met, R = 1.
+pub fn status<'py>(py: Python<'py>, of: &Status) -> PyResult<Dict<'py>> {
+    Ok(dict!(
+        py, of: outcome = name_of(of.outcome), stage = stage(of.stage), progress, sweeps, undone,
+        epsilon, overlap = of.met.overlap, dispersion = of.met.dispersion,
+        best = measures(py, &of.best)?,
+    ))
 }
 
-impl Status {
-    pub fn new(py: Python<'_>, status: &crate::Status) -> PyResult<Self> {
-        Ok(Self {
-            outcome: name_of(status.outcome),
-            stage: match status.stage {
-                Stage::Loosen => "loosen",
-                Stage::Collapse => "collapse",
-                Stage::Anneal => "anneal",
-                Stage::Reanneal => "reanneal",
-                Stage::Settle => "settle",
-            },
-            progress: status.progress,
-            sweeps: status.sweeps,
-            undone: status.undone,
-            epsilon: status.epsilon,
-            overlap: status.met.overlap,
-            dispersion: status.met.dispersion,
-            best: Py::new(py, Measures::from(status.best))?,
-        })
+fn stage(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Loosen => "loosen",
+        Stage::Collapse => "collapse",
+        Stage::Anneal => "anneal",
+        Stage::Reanneal => "reanneal",
+        Stage::Settle => "settle",
     }
 }
 
@@ -75,15 +59,14 @@ impl Tightener {
     }
 
     /// Works for about so many seconds, unless done before, with the interpreter released.
-    fn advance(&mut self, py: Python<'_>, seconds: f64) -> PyResult<Status> {
+    fn advance<'py>(&mut self, py: Python<'py>, seconds: f64) -> PyResult<Dict<'py>> {
         let budget = budget(seconds)?;
-        let status = released(py, || self.0.advance(budget))?;
-        Status::new(py, &status)
+        status(py, &released(py, || self.0.advance(budget))?)
     }
 
     /// Where it stands.
-    fn status(&self, py: Python<'_>) -> PyResult<Status> {
-        Status::new(py, &released(py, || self.0.status())?)
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
+        status(py, &released(py, || self.0.status())?)
     }
 
     /// The best rope so far, its R_s = 1, its centre at the origin.

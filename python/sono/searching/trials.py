@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Self, TypeAlias, TypeVar
+from typing import Self, TypeAlias
 
 from sono import starts
 from sono._core import Collapse, PanicError, Polish
@@ -17,7 +17,7 @@ from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.searching.minima import Minimum, Shape, has_edges, radii_of_gyration, rank
 from sono.starts.scramble import scramble
 from sono.tightening import tighten
-from sono.tightening.engines import SLICE, Engine, measures_of
+from sono.tightening.engines import done, status_of
 from sono.tightening.trial import HOT, Recipe, Trial
 
 FINE_EDGE = 0.2
@@ -47,7 +47,6 @@ FAILURES = (ValueError, PanicError)
 """What ends a trial, or the refining of a shape, and nothing else: a `CurveError`, a curve that no scramble
 can be made of, a bug in the core."""
 
-Worker = TypeVar("Worker", bound=Engine)
 
 Watch: TypeAlias = Callable[[], None]
 """Called about ten times a second; whatever it raises stops the work."""
@@ -76,7 +75,7 @@ class Source:
         type = None
         with suppress(TooEntangledError):  # the collapsed rope is less so, as a rule
             type = fingerprint(curve)
-        collapsed = _done(Collapse(curve, False, "{}"), watch).best()
+        collapsed = done(Collapse(curve, False, "{}"), watch).best()
         return cls(None, collapsed, type or fingerprint(collapsed))
 
     def start(self, variant: int, watch: Watch = unwatched) -> Components:
@@ -93,17 +92,17 @@ def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     recipe = Recipe({}, anneal | {"seed": seed}, seed, _spread(*ANNEAL_EDGES, variant))
     try:
         trial = Trial(recipe, source.start(variant, watch))
-        engine = _done(trial.begin(), watch)
+        engine = done(trial.begin(), watch)
         while trial.take(engine):
             if trial.n > MOST_BEADS:
                 return Shape(variant)
-            engine = _done(trial.begin(), watch)
+            engine = done(trial.begin(), watch)
     except FAILURES:
         return Shape(variant)
     curve = engine.best()
     if fingerprint(curve) != source.type:
         return Shape(variant, changed=True)
-    return Shape(variant, measures_of(engine).l_a_or_l_p, radii_of_gyration(curve), curve)
+    return Shape(variant, status_of(engine).best.l_a_or_l_p, radii_of_gyration(curve), curve)
 
 
 def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
@@ -114,7 +113,7 @@ def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
         polish = curve and _polished(curve, n, watch)
         if not polish:
             return None
-        curve, length = polish.best(), measures_of(polish).l_a_or_l_p
+        curve, length = polish.best(), status_of(polish).best.l_a_or_l_p
         if has_edges(n, length, FINE_EDGE):
             return _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
     return None
@@ -144,18 +143,11 @@ def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
     """
     n = sum(map(len, minimum.curve))
     try:
-        fine = _done(Polish(minimum.curve, 2 * n, False, 0), watch)
+        fine = done(Polish(minimum.curve, 2 * n, False, 0), watch)
     except FAILURES:
         return minimum
     polish = _polished(fine.best(), n, watch)
     return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
-
-
-def _done(worker: Worker, watch: Watch) -> Worker:
-    """Let an engine run to its end."""
-    while worker.advance(SLICE).outcome == "running":
-        watch()
-    return worker
 
 
 def _spread(least: float, most: float, number: int, step: float = (math.sqrt(5) - 1) / 2) -> float:
@@ -168,18 +160,18 @@ def _polished(curve: Components, n: int, watch: Watch) -> Polish | None:
     found = []
     for offset in range(OFFSETS):
         with suppress(*FAILURES):
-            found.append(_done(Polish(curve, n, False, offset), watch))
+            found.append(done(Polish(curve, n, False, offset), watch))
     return min(
-        found, key=lambda polish: (not _is_tight(polish), measures_of(polish).l_a_or_l_p), default=None
+        found, key=lambda polish: (not _is_tight(polish), status_of(polish).best.l_a_or_l_p), default=None
     )
 
 
 def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
     """Return the minimum with what the polish made of its rope."""
-    status = polish.status()
+    status = status_of(polish)
     return replace(
         minimum,
-        length=measures_of(polish).l_a_or_l_p,
+        length=status_of(polish).best.l_a_or_l_p,
         tight=_is_tight(polish),
         residual=status.residual,
         curve=polish.best(),
@@ -187,4 +179,4 @@ def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
 
 
 def _is_tight(polish: Polish) -> bool:
-    return polish.status().outcome == "tight"
+    return status_of(polish).outcome == "tight"

@@ -13,8 +13,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sono._core import measure
-from sono.curve import Components
+from sono.curve import Components, measure
 from sono.starts.drawing import divided
 
 Diagram: TypeAlias = list[tuple[int, int, int, int]]

@@ -13,7 +13,7 @@ from typing import Any, Literal, Self, TypeVar, cast
 
 from sono._core import Polish, Tightener
 from sono.curve import Components, Measures, measure, packed, unpacked
-from sono.tightening.engines import Engine
+from sono.tightening.engines import Engine, status_of
 from sono.tightening.settings import TRIALS, Method, default_settings
 from sono.tightening.trial import COARSE, HOT, Recipe, Target, Trial, aimed, coarsest
 
@@ -131,7 +131,7 @@ class Plan:
             self.shape, self.trial = self.curve, None
             self._anneal()
         elif not self.trial.take(engine):
-            self._compare(Measures.of(engine.status().best))
+            self._compare(status_of(engine).best)
             self._next_trial()
 
     def state(self) -> dict[str, Any]:
@@ -156,7 +156,7 @@ class Plan:
 
     def climb_again(self, engine: Engine) -> bool:
         """Plan another climb if edges, which follow the rope's own length, are not as long as asked for."""
-        found = engine.status().best
+        found = status_of(engine).best
         aim = aimed(self.targets[0], found.l_p)
         if self.climbs == CLIMBS or aim == found.n:
             return False

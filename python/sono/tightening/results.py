@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-from sono._core import PolishStatus, Status
 from sono.curve import Curve, Forces, Measures
 from sono.records import Record
+from sono.tightening.engines import Status
 from sono.tightening.plan import Stage
 
 
@@ -67,4 +67,4 @@ class Progress:
     n: int
     target: int
     trial: int
-    status: Status | PolishStatus | None
+    status: Status | None

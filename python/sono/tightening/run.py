@@ -16,7 +16,7 @@ from sono.curve import Components, Curve, Measures, forces, forces_of
 from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.patience import patiently, within
 from sono.tightening.coarser import coarser, unit
-from sono.tightening.engines import Engine, Seen, advanced, as_seen, rank, restored, saved
+from sono.tightening.engines import Engine, Seen, Status, advanced, as_seen, rank, restored, saved, status_of
 from sono.tightening.plan import Plan
 from sono.tightening.results import KnotTypeError, Progress, Tight
 from sono.tightening.settings import LEAST_DL, MOST, MOST_DL, TRIALS, Method, check_settings
@@ -223,7 +223,7 @@ class Run:
         """Tell whether the last rung has been tried from enough offsets along the rope."""
         if not isinstance(self.engine, Polish):
             return True
-        stuck = self.engine.status().outcome != "tight"
+        stuck = status_of(self.engine).outcome != "tight"
         n = self.plan.n
         several = (n <= OFFSETS_TO or stuck) and sum(map(len, self.plan.curve)) != n
         return self.offset + 1 >= (OFFSETS if several else 1)
@@ -234,7 +234,7 @@ class Run:
         if not (self.rival and isinstance(self.engine, Polish)):
             return self.engine
         better, worse = sorted((self.engine, self.rival), key=rank)
-        self.work["factorisations"] += worse.status().factorisations
+        self.work["factorisations"] += status_of(worse).factorisations
         self.engine, self.rival = better, None
         return better
 
@@ -251,7 +251,7 @@ class Run:
     def _count(self, engine: Engine) -> None:
         """Add up the work of an engine that is left."""
         for kind in ("sweeps", "factorisations"):
-            self.work[kind] += getattr(engine.status(), kind, 0)
+            self.work[kind] += getattr(status_of(engine), kind)
 
     def _fail(self, error: CurveError | PanicError | KnotTypeError) -> None:
         """Do without the trial, or the offset, that failed; raise its error where there is nothing else."""
@@ -262,9 +262,9 @@ class Run:
         needed = error.needed or float("inf") if isinstance(error, CurveError) else 0
         self.plan.fail(error, needed)
 
-    def _tight(self, status: Any, curve: Components, measures: Measures) -> Tight:
+    def _tight(self, status: Status | None, curve: Components, measures: Measures) -> Tight:
         """Make the result of a rope, and of all the work that led there."""
-        plan, more = self.plan, {kind: getattr(status, kind, 0) for kind in ("sweeps", "factorisations")}
+        plan = self.plan
         return Tight(
             curve=Curve(curve),
             measures=measures,
@@ -272,25 +272,24 @@ class Run:
             shapes=list(plan.shapes),
             failed=list(plan.failed),
             loosened=plan.loosened,
-            sweeps=int(self.work["sweeps"] + more["sweeps"]),
-            factorisations=int(self.work["factorisations"] + more["factorisations"]),
+            sweeps=int(self.work["sweeps"] + (status.sweeps if status else 0)),
+            factorisations=int(self.work["factorisations"] + (status.factorisations if status else 0)),
             seconds=self.work["seconds"],
-            mu=getattr(status, "mu", None),
+            mu=status.mu if status else None,
         )
 
     def _ended(self, engine: Engine, look: Callable[[], None]) -> Tight:
         """Return what the last rung has ended in, with the forces in it."""
         status, curve = as_seen(engine)
-        tight = self._tight(status, curve, Measures.of(status.best))
+        tight = self._tight(status, curve, status.best)
         if not isinstance(engine, Polish):
             return tight
         if not tight.converged:
             # The best state is not the last, to which the multipliers belong.
             fitted = patiently(partial(forces, curve), look)
             return replace(tight, residual=fitted.residual, forces=fitted)
-        found = engine.status()
         own = forces_of(engine.forces(), curve)
-        return replace(tight, residual=found.residual, excess=found.excess, forces=own)
+        return replace(tight, residual=status.residual, excess=status.excess, forces=own)
 
 
 _STATE = {"plan", "type", "engine", "rival", "offset", "work"}

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from sono._core import Collapse, CurveError, Polish, Tightener
 from sono.curve import Components
-from sono.tightening.engines import Engine
+from sono.tightening.engines import Engine, status_of
 
 Target = int | float
 """What a rope is to have: so many vertices, an int, or edges of this length in radii, a float."""
@@ -72,7 +72,7 @@ class Trial:
 
     def take(self, engine: Engine) -> bool:
         """Go on from what the stage has ended in; tell whether there is another one."""
-        recipe, length = self.recipe, engine.status().best.l_p
+        recipe, length = self.recipe, status_of(engine).best.l_p
         self.curve = engine.best()
         if self.stage == "collapse":
             self.n = max(int(length / recipe.edge), 3 * len(self.curve))
