@@ -46,7 +46,8 @@ def levels() -> None:
         seconds = time.perf_counter() - start
         status, curve = polish.status(), polish.best()
         each = 1e3 * seconds / status["factorisations"]
-        figures = f"{status['best']['l_p']:.8f}\t{status['best']['l_c']:.8f}\t{status['iterations']}\t{status['factorisations']}"
+        best, steps = status["best"], (status["iterations"], status["factorisations"])
+        figures = f"{best['l_p']:.8f}\t{best['l_c']:.8f}\t{steps[0]}\t{steps[1]}"
         print(f"{n}\t{figures}\t{seconds:.2f}\t{each:.2f}", flush=True)
         n *= 2
 

@@ -1,4 +1,7 @@
-"""The command line: one module a command, imported when it is used."""
+"""The command line: one module a command, imported when it is used.
+
+May import `curve`, `formats`, `jobs`, `patience`, `printing`, `starts`, `tables` and `tightening`.
+"""
 
 import io
 import os

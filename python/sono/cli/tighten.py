@@ -16,7 +16,7 @@ from sono.jobs.locks import Taken
 
 if TYPE_CHECKING:
     from sono.tightening import Method
-    from sono.tightening.trial import Target
+    from sono.tightening.targets import Target
 
 
 def _numbers(ctx: click.Context, param: click.Parameter, value: str | None) -> "list[Target]":

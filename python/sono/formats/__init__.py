@@ -3,6 +3,8 @@
 A new format is one module and a line in `FORMATS`, with its suffixes in `SUFFIXES`. A file that is read is
 recognised by its content unless the suffix tells, and is plain text when nothing else fits; one that is
 written needs a suffix that is known, or none.
+
+May import `curve` and `printing`.
 """
 
 import os

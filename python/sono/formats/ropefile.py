@@ -26,7 +26,7 @@ TIGHT, SETTLED, STUCK, STOPPED = "tight", "settled", "stuck", "stopped"
 _TITLE = re.compile(r"^# (.*): (\w+), rope radius R_s = 1$", re.MULTILINE)
 _FIGURES = re.compile(r"^# (n \d+  dl .*  \(length over radius\))$", re.MULTILINE)
 _MADE = re.compile(r"^# method (\S+)  trials (\d{1,18})  settings (\{.*\})$", re.MULTILINE)
-_WORK = r"met in (\d{1,18}) of (\d{1,18}) trials, (\d{1,18}) s(?: of ([\d.]+(?:e[+-]?\d{1,3})?) s)?"
+_WORK = r"met in (\d{1,18}) of (\d{1,18}) trials, (\d{1,18}) s(?: of (\d+(?:\.\d+)?(?:e[+-]?\d{1,3})?) s)?"
 _SEARCHED = re.compile(
     rf"^# searched: variant (-?\d{{1,18}}), seed (\d{{1,18}})(?:, {_WORK})?$",
     re.MULTILINE,

@@ -1,27 +1,25 @@
 """A search under way as a job: its files, its checkpoint, its limits, its rows."""
 
 import math
-import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from itertools import zip_longest
 from typing import Any
 
 from sono import formats
-from sono.curve import forces, measure
+from sono.curve import measure
 from sono.formats import FormatError, VertexFile, is_stream
 from sono.formats.ropefile import STOPPED, STUCK, TIGHT, Header, Searched
-from sono.invariants import fingerprint
 from sono.jobs import checkpoints, sources
-from sono.jobs.curvefiles import KEPT_RESIDUAL, digest, header_of, measured
+from sono.jobs.curvefiles import digest, measured
+from sono.jobs.earlier import Earlier, left_in
 from sono.jobs.quest import Quest
 from sono.jobs.result import Result, Show, as_row
 from sono.patience import patiently, within
 from sono.printing import printable
-from sono.searching.minima import SAME_LENGTH, Minimum, has_edges, merged, same_edges
+from sono.searching.minima import Minimum, has_edges, merged
 from sono.searching.search import KEPT, OutOfTime, Search
 from sono.searching.trials import FAILURES, FINE_EDGE, Source, finish
 from sono.tables import Row
@@ -42,33 +40,6 @@ MOMENT = 0.5
 KIND = "search"
 """What checkpoints of this module call themselves."""
 
-SAME_ROPE = 1e-8
-"""Relative difference in L_a up to which ropes of the same edges are one, found again."""
-
-
-@dataclass(frozen=True)
-class _Earlier:
-    """A rope that is in the output already, its row, and what it says of the search that found it.
-
-    `limit` are the seconds after which that search was over, if that is why it ended.
-    """
-
-    row: Row
-    rope: Minimum
-    seed: int | None = None
-    trials: int = 0
-    limit: float = 0
-
-    @property
-    def n(self) -> int:
-        """Its number of vertices."""
-        return sum(map(len, self.rope.curve))
-
-    @property
-    def dl(self) -> float:
-        """Its edge length, in radii."""
-        return float(self.row["dl"] or 0) / float(self.row["r_s"] or 1)
-
 
 class Hunt:
     """A search job under way."""
@@ -81,10 +52,9 @@ class Hunt:
         self.over = False
         self.named = job.source if sources.is_name(job.source) else None
         self.search = Search(job.seed, max(KEPT, job.minima))
-        self.seconds = 0.0
         self.begun = time.monotonic()
         self.delivered: tuple[Minimum, str] | None = None
-        self.earlier: _Earlier | None = None
+        self.earlier: Earlier | None = None
 
     def results(self) -> Iterator[Result]:
         """Search, and give a row for each of the shortest minima at the end."""
@@ -93,7 +63,7 @@ class Hunt:
         try:
             source = self.begin()
             search = self.search
-            if self.earlier and self.is_enough(self.earlier):
+            if self.earlier and self.earlier.does(job, job.trials or ENDLESS):
                 yield Result(self.earlier.row)
                 return
             try:  # at once, so that it is known before hours are spent
@@ -128,7 +98,7 @@ class Hunt:
         source = patiently(partial(Source.of, curve, self.named, self.look), self.look)
         self.restore(source)
         if self.job.resume:
-            self.earlier = self.left_earlier(source)
+            self.earlier = left_in(self.job, self.origin(), source, self.look)
         return source
 
     def unrefined(self) -> list[Minimum]:
@@ -138,58 +108,6 @@ class Hunt:
             for shape in self.search.shapes[:1]
             if shape.curve
         ]
-
-    def left_earlier(self, source: Source) -> _Earlier | None:
-        """Return what is in the output, if there is any. Raises `FormatError` for another knot."""
-        output = self.job.output
-        if not os.path.isfile(output):
-            return None
-        file, measures = measured(output)
-        header = header_of(output)
-        # Invariants do not tell all knots apart; where the file says what it was made from, that has to fit.
-        origin = None if header.made else header.origin
-        why = "was found from another curve" if origin and origin != self.origin() else None
-        if patiently(partial(fingerprint, file.components), self.look) != source.type:
-            why = "is another knot"
-        if why:
-            raise FormatError(f"{output}: {why} than {self.job.name}; move it away or name another -o")
-        residual = patiently(partial(forces, file.components), self.look).residual
-        tight = residual <= KEPT_RESIDUAL
-        row = as_row(self.job.name, output, measures, status=TIGHT if tight else STOPPED, residual=residual)
-        rope = Minimum(0, measures.l_a or math.inf, tight, residual, file.components, [])
-        work = header.searched
-        if not work or not work.trials:
-            return _Earlier(row, rope)
-        row = {**row, "variant": work.variant, "hits": work.hits, "trials": work.trials}
-        return _Earlier(row, rope, work.seed, work.trials, work.limit or work.seconds)
-
-    def is_enough(self, earlier: _Earlier) -> bool:
-        """Tell whether the earlier search was finished and did what this one is to do."""
-        job, rope = self.job, earlier.rope
-        done = earlier.trials >= (job.trials or ENDLESS) or earlier.limit >= (job.time_limit or math.inf)
-        same = earlier.seed == job.seed and has_edges(earlier.n, rope.length, job.dl)
-        return done and same and rope.tight and header_of(job.output).status == TIGHT
-
-    def is_worse(self, minimum: Minimum) -> bool:
-        """Tell whether the rope that is in the output is to stay there: both are compared on the finer edges.
-
-        The finer rope stays unless the other one is another, shorter minimum.
-        """
-        earlier, dl = self.earlier, measure(minimum.curve).dl
-        if not earlier:
-            return False
-        if earlier.rope.tight and not minimum.tight:
-            return True
-        old, new = earlier.rope, minimum
-        if same_edges(earlier.dl, dl):
-            return new.length > old.length * (1 + SAME_ROPE)
-        coarse, fine = (old, dl) if dl < earlier.dl else (new, earlier.dl)
-        finer = self.finer(coarse, round(coarse.length / fine))
-        if not finer:
-            return True
-        if coarse is old:
-            return new.length > finer.length * (1 + SAME_LENGTH)
-        return finer.length > old.length * (1 - SAME_LENGTH)
 
     def finer(self, minimum: Minimum, n: int) -> Minimum | None:
         """Polish a rope on n vertices, for which a search that is over has only a moment."""
@@ -249,7 +167,8 @@ class Hunt:
         """
         for minimum in best:
             status = status or _status(minimum)
-            if self.delivered == (minimum, status) or self.is_worse(minimum):
+            stays = self.earlier and self.earlier.stays(minimum, self.finer)
+            if self.delivered == (minimum, status) or stays:
                 continue
             header = Header.of(
                 self.job.name,
@@ -338,7 +257,7 @@ class Hunt:
             raise FormatError(f"{path}: is of another knot or seed; repeat those or remove it")
         search.minima = [minimum for minimum in search.minima if search.confirmed(minimum, source)]
         search.kept = max(search.kept, self.job.minima)
-        self.search, self.seconds = search, seconds
+        self.search = search
         self.begun -= seconds
 
     def save(self) -> None:

@@ -9,7 +9,7 @@ from sono.jobs import contacts
 from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured
 from sono.jobs.order import Order, judged, made_from, rope_row, shown, tolerance
 from sono.jobs.result import Result
-from sono.tightening.trial import Target, aimed
+from sono.tightening.targets import Target, aimed
 
 
 def kept_row(job: Order, file: VertexFile, n: Target) -> Result:

@@ -13,7 +13,7 @@ from sono.jobs.result import Result, as_row
 from sono.tables import Row
 from sono.tightening import Method
 from sono.tightening.settings import TRIALS, default_settings
-from sono.tightening.trial import Target
+from sono.tightening.targets import Target
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from sono.jobs.order import Order, judged, made_from, rope_row, shown
 from sono.jobs.result import Result
 from sono.tables import Row
 from sono.tightening import KnotTypeError, Progress, Run, Stopped, Tight
-from sono.tightening.trial import Target
+from sono.tightening.targets import Target
 
 KIND = "tightening"
 """What checkpoints of this module call themselves."""

@@ -1,6 +1,6 @@
 """The search for the shortest tight rope of a knot: many trials, and the minima that they end in.
 
-May import `starts`, `tightening` and what those may.
+May import `curve`, `invariants`, `records`, `starts` and `tightening`.
 """
 
 from sono.searching.minima import Minimum

@@ -3,7 +3,8 @@
 Each row is written and flushed as soon as it is finished, so that a later failure loses nothing. Text,
 Markdown and LaTeX are for readers: they round, and head their columns with the paper's symbols, L_p. TSV, CSV
 and JSON are for the next program: they keep every digit, and call a column by its key, l_p. Wherever a column
-is named, either will do. May import `formats`; `published` also `starts` and `invariants`.
+is named, either will do. May import `formats`, `printing`, and for what is
+published `starts` and `invariants`.
 """
 
 from collections.abc import Sequence

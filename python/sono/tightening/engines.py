@@ -22,8 +22,9 @@ _ENGINES: dict[str, type[Engine]] = {engine.__name__: engine for engine in (Coll
 class Status(Record):
     """Where an engine stands: its `outcome`, its `progress` from 0 to 1, and what its `best` state measures.
 
-    SONO's engines name the `stage` they are at, which may be "loosen", and count `sweeps`. The polish counts `factorisations`, and has the largest force that is left
-    over, the `residual`, tension being 1, the barrier parameter `mu`, and the `excess` over the minimum.
+    SONO's engines name the `stage` they are at, which may be "loosen", and count `sweeps`. The polish counts
+    `factorisations`, and has the largest force that is left over, the `residual`, tension being 1, the
+    barrier parameter `mu`, and the `excess` over the minimum.
     """
 
     outcome: Literal["running", "tight", "stuck"]

@@ -15,7 +15,8 @@ from sono._core import Polish, Tightener
 from sono.curve import Components, Measures, measure, packed, unpacked
 from sono.tightening.engines import Engine, status_of
 from sono.tightening.settings import TRIALS, Method, default_settings
-from sono.tightening.trial import COARSE, HOT, Recipe, Target, Trial, aimed, coarsest
+from sono.tightening.targets import COARSE, Target, aimed, coarsest
+from sono.tightening.trial import HOT, Recipe, Trial
 
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 

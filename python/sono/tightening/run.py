@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from typing import Any, Self, TypeVar, cast, get_args
+from typing import Any, Self, TypeVar, cast
 
 from sono._core import Collapse, CurveError, PanicError, Polish
 from sono.curve import Components, Curve, Measures, forces, forces_of
@@ -19,8 +19,8 @@ from sono.tightening.coarser import coarser, unit
 from sono.tightening.engines import Engine, Seen, Status, advanced, as_seen, rank, restored, saved, status_of
 from sono.tightening.plan import Plan
 from sono.tightening.results import KnotTypeError, Progress, Tight
-from sono.tightening.settings import LEAST_DL, MOST, MOST_DL, TRIALS, Method, check_settings
-from sono.tightening.trial import Target
+from sono.tightening.settings import TRIALS, Method, check_settings
+from sono.tightening.targets import Target, check, coarse_first
 
 Done = TypeVar("Done")
 
@@ -57,7 +57,7 @@ class Run:
         An int n counts the vertices of all components together, a float is an edge length in radii. Raises
         `ValueError` for a wrong target, method or setting.
         """
-        _check(curve, targets, method, trials)
+        check(curve, targets, method, trials)
         check_settings(settings)
         self.plan = Plan(coarse_first(targets), settings, method, trials, curve)
         self.type: Fingerprint | None = None
@@ -293,27 +293,3 @@ class Run:
 
 
 _STATE = {"plan", "type", "engine", "rival", "offset", "work"}
-
-
-def coarse_first(targets: Sequence[Target]) -> list[Target]:
-    """Put targets in order, each of them once."""
-    return sorted(set(targets), key=lambda target: target if isinstance(target, int) else -target)
-
-
-def _check(curve: Components, targets: Sequence[Target], method: str, trials: int) -> None:
-    """Refuse what no run could do, before anything is computed."""
-    least = 3 * len(curve)
-    for target in targets:
-        if not isinstance(target, int):
-            if not LEAST_DL <= target <= MOST_DL:
-                raise ValueError(f"dl = {target} is no edge length from {LEAST_DL:g} to {MOST_DL:g} radii")
-        elif target > MOST:
-            raise ValueError(f"n = {target} is too large; {MOST:,} vertices are the most")
-        elif target < least:
-            raise ValueError(
-                f"n = {target} is too small; 3 vertices for each component make {least} at least"
-            )
-    if method not in get_args(Method):
-        raise ValueError(f"unknown method {method!r}; the methods are: {', '.join(get_args(Method))}")
-    if trials < 1:
-        raise ValueError(f"trials = {trials} is too small; 1 is the least")

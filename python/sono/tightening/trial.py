@@ -10,12 +10,7 @@ from typing import Any, Literal
 from sono._core import Collapse, CurveError, Polish, Tightener
 from sono.curve import Components
 from sono.tightening.engines import Engine, status_of
-
-Target = int | float
-"""What a rope is to have: so many vertices, an int, or edges of this length in radii, a float."""
-
-COARSE = 0.7
-"""Edges of a shape as it is found are at most so long, and at least half of it, where n allows; in radii."""
+from sono.tightening.targets import Target, aimed, coarsest
 
 TRIAL_EDGE = 0.45
 """Edge length of shapes that are found for no n, in radii."""
@@ -85,15 +80,3 @@ class Trial:
         else:
             return False
         return True
-
-
-def aimed(target: Target, length: float) -> int:
-    """Return the number of vertices that a rope of this length has then."""
-    return target if isinstance(target, int) else max(round(length / target), 3)
-
-
-def coarsest(n: int, length: float) -> int:
-    """Halve n as long as the edges of a rope of this length stay short enough."""
-    while 2 * length / n < COARSE:
-        n //= 2
-    return n

@@ -18,7 +18,7 @@ from sono.jobs import tighten as batch
 from sono.jobs.tighten import Job
 from sono.tightening import Progress, Run, Stopped
 from sono.tightening.plan import Stage
-from sono.tightening.trial import Target
+from sono.tightening.targets import Target
 
 pytestmark = pytest.mark.usefixtures("slices")
 
