@@ -119,3 +119,11 @@ def test_a_name_that_is_no_text(folder: Path, spawn: Spawn) -> None:
     assert stdout.splitlines()[1].startswith("?\t4\t")
     assert r"sono: \udcfe.txt:1: 1 columns" in stderr
     assert process.returncode == 1
+
+
+def test_a_name_is_no_file(folder: Path, sono: Sono) -> None:
+    result = sono("measure", "8_18", "3_1.txt", "T(2,5)")
+    assert result.exit_code == 1
+    assert len(result.stdout.splitlines()) == 2
+    for knot, quoted in (("8_18", "8_18"), ("T(2,5)", "'T(2,5)'")):
+        assert f"sono: {knot}: no such file; measure takes files; `sono start {quoted} |" in result.stderr

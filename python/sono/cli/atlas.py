@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from sono.cli import options
+from sono.cli import options, places
 from sono.cli.runner import Batch, Show
 
 if TYPE_CHECKING:
@@ -37,16 +37,9 @@ COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference",
     show_default=True,
     help="Starts to try for each knot.",
 )
-@click.option("--seed", type=click.IntRange(0, 10**6), default=0, help="Other starts.  [default: 0]")
+@options.other_starts
 @options.parallel("Trials made at the same time.")
-@click.option(
-    "--checkpoint",
-    metavar="FOLDER",
-    type=click.Path(file_okay=False),
-    default="atlas-search",
-    show_default=True,
-    help="Keep the searches here; the next update goes on from them.",
-)
+@options.checkpoint("Keep the searches here; the next update goes on from them.", "atlas-search")
 @options.table(COLUMNS)
 @options.quiet
 def command(
@@ -85,7 +78,7 @@ def command(
         work = [
             _AtlasJob(
                 atlas,
-                options.knot_name(source).split(".")[0] if os.path.isfile(source) else source,
+                places.knot_name(source).split(".")[0] if os.path.isfile(source) else source,
                 SearchJob(
                     source,
                     source,
@@ -108,7 +101,7 @@ def command(
             raise click.UsageError("give --update to take ropes from files into the atlas")
         paths = [path for job in work if job.search for path in job.search.files()]
         paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
-        options.prepare(paths, [], False)
+        places.prepare(paths, [], False)
         code = Batch(options.writer(format_, columns), quiet).run(work, workers.count)
     searches = [job.search.checkpoint for job in work if job.search]
     if searches and not quiet:

@@ -1,12 +1,13 @@
 """`sono measure FILE...`: what curves measure, as they are."""
 
+import shlex
 import sys
 from functools import partial
 
 import click
 
 from sono import tables
-from sono.cli import options
+from sono.cli import options, places
 
 
 @click.command("measure")
@@ -27,10 +28,12 @@ def command(
     below 1e-6 for a polished one.
     """
     # Imported here, since numpy would make --help wait.
+    from sono import starts
     from sono.curve import forces
     from sono.formats import FormatError
     from sono.jobs.curvefiles import measured
     from sono.jobs.result import as_row
+    from sono.jobs.sources import is_name
     from sono.patience import patiently
 
     if residual and "residual" not in columns:
@@ -39,6 +42,10 @@ def command(
     with options.writer(format_, columns) as table:
         for source in sources:
             try:
+                if is_name(source) and starts.knows(source):
+                    start = f"`sono start {shlex.quote(source)} | sono measure -`"
+                    cure = f"measure takes files; {start} measures a loose start"
+                    raise FormatError(f"{source}: no such file; {cure}")
                 curve, measures = measured(source)
             except FormatError as error:
                 failed = True
@@ -52,5 +59,5 @@ def command(
             more = {}
             if "residual" in columns:
                 more["residual"] = patiently(partial(forces, curve.components)).residual
-            table.row(as_row(options.knot_name(source), curve.name, measures, **more))
+            table.row(as_row(places.knot_name(source), curve.name, measures, **more))
     sys.exit(1 if failed else 0)

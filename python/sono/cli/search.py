@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from sono import tables
-from sono.cli import options
+from sono.cli import options, places
 from sono.cli.runner import Batch
 
 COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
@@ -38,22 +38,12 @@ COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
     metavar="M",
     help="Rows for each knot: its M shortest minima.",
 )
-@click.option(
-    "-o",
-    "--output",
-    metavar="PATH",
-    help="File or folder/ for the vertices of the shortest.  [default: NAME.tight.txt in this folder]",
-)
-@click.option("--force", is_flag=True, help="Overwrite files that are there.")
-@click.option("--seed", type=click.IntRange(0, 10**6), default=0, help="Other starts.  [default: 0]")
+@options.output("File or folder/ for the vertices of the shortest.  [default: NAME.tight.txt in this folder]")
+@options.force
+@options.other_starts
 @options.parallel("Trials made at the same time.")
-@click.option(
-    "--checkpoint",
-    metavar="FOLDER",
-    type=click.Path(file_okay=False),
-    help="Keep the state of each search here.",
-)
-@click.option("--resume", is_flag=True, help="Go on from checkpoints; keep outputs that are finished.")
+@options.checkpoint("Keep the state of each search here.")
+@options.resume("finished")
 @options.table(COLUMNS)
 @options.quiet
 def command(
@@ -102,7 +92,7 @@ def command(
             )
             for source, name, path in _plan(sources, output)
         ]
-        options.prepare([path for job in work for path in job.files()], sources, not (force or resume))
+        places.prepare([path for job in work for path in job.files()], sources, not (force or resume))
         options.tell_of_shadows(sources, quiet)
         table = options.table_beside(format_, columns, output == "-", quiet)
         sys.exit(Batch(table, quiet).run(work, workers.count))
@@ -111,11 +101,11 @@ def command(
 def _plan(sources: list[str], output: str | None) -> Iterator[tuple[str, str, str]]:
     """Give the name of each source, and where its vertices go."""
     for source in sources:
-        name = options.knot_name(source)
-        if output and options.names_one_file(output):
+        name = places.knot_name(source)
+        if output and places.names_one_file(output):
             if len(sources) > 1:
                 raise click.UsageError("-o names one file for several knots; name a folder (FOLDER/)")
-            options.check_suffix(output)
+            places.check_suffix(output)
             yield source, name, output
         else:
             yield source, name, os.path.join(output or "", f"{name}.tight.txt")

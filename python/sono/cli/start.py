@@ -44,7 +44,7 @@ def command(
     """
     # Imported here, since numpy would make --help wait.
     from sono import formats, starts
-    from sono.cli import options
+    from sono.cli import options, places
     from sono.starts.braids import braid
     from sono.starts.scramble import scramble
 
@@ -57,7 +57,7 @@ def command(
         raise click.UsageError("give either a NAME or a --braid word")
     if word is not None and variant < 0:
         raise click.UsageError(f"--variant {variant}: a braid word has no planar diagram; give 0 or more")
-    options.check_suffix(output)
+    places.check_suffix(output)
     if output != "-" and os.path.exists(output) and not force:
         raise click.UsageError(f"{output} exists; --force overwrites it")
     try:

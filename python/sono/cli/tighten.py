@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sono import tables
-from sono.cli import options
+from sono.cli import options, places
 from sono.cli.runner import Batch
 from sono.jobs.locks import Taken
 
@@ -82,18 +82,15 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     help="Shapes to find with the method both; the shortest is polished. The first 4 will do where they "
     "agree, or are longer than 150.",
 )
-@click.option(
-    "-o",
-    "--output",
-    metavar="PATH",
-    help="File or folder/ for the vertices, - for standard output.  [default: NAME.nN.txt in this folder]",
+@options.output(
+    "File or folder/ for the vertices, - for standard output.  [default: NAME.nN.txt, or NAME.dlDL.txt, here]"
 )
 @click.option(
     "--contacts",
     metavar="PATH",
     help="File or folder/ for the forces in the tight rope, as TSV; in a folder NAME.nN.contacts.tsv.",
 )
-@click.option("--force", is_flag=True, help="Overwrite files that are there.")
+@options.force
 @click.option(
     "--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="Seed of the anneals.  [default: 0]"
 )
@@ -106,13 +103,8 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     help="Change a setting of SONO, such as anneal_sweeps=400000.",
 )
 @options.parallel("Knots tightened at the same time.")
-@click.option(
-    "--checkpoint",
-    metavar="FOLDER",
-    type=click.Path(file_okay=False),
-    help="Keep the state of each run here.",
-)
-@click.option("--resume", is_flag=True, help="Go on from checkpoints; keep outputs that are there.")
+@options.checkpoint("Keep the state of each run here.")
+@options.resume("there")
 @options.table((*tables.DEFAULT, "status"))
 @options.quiet
 def command(
@@ -175,7 +167,7 @@ def command(
         for source, name, outputs in _plan(sources, targets, output, fresh)
     ]
     unfinished = (free_name(path) for job in work for path in job.outputs.values() if path != "-")
-    options.prepare([path for job in work for path in job.files()], sources, fresh, unfinished)
+    places.prepare([path for job in work for path in job.files()], sources, fresh, unfinished)
     options.tell_of_shadows(sources, quiet)
     table = options.table_beside(format_, columns, "-" in (output, contacts), quiet)
     with options.workers(jobs, cluster) as workers:
@@ -187,13 +179,13 @@ def _plan(
     sources: list[str], targets: "list[Target]", output: str | None, fresh: bool
 ) -> "Iterator[tuple[str, str, dict[Target, str]]]":
     """Give the name of each source, and where its vertices for each target go."""
-    names = [options.knot_name(source) for source in sources]
-    if output and options.names_one_file(output):
+    names = [places.knot_name(source) for source in sources]
+    if output and places.names_one_file(output):
         if len(sources) * len(targets) > 1:
             raise click.UsageError(
                 "-o names one file, but there are several results; name a folder (FOLDER/)"
             )
-        options.check_suffix(output)
+        places.check_suffix(output)
         yield sources[0], names[0], {targets[0]: output}
         return
     for source, name in zip(sources, names, strict=True):
@@ -214,7 +206,7 @@ def _label(target: "Target") -> str:
 def _is_free(paths: list[str]) -> bool:
     """Tell whether none of the files is there, nor about to be written by another process."""
     try:
-        options.claim(paths)
+        places.claim(paths)
     except Taken:
         return False
     return not any(map(os.path.exists, paths))
@@ -226,7 +218,7 @@ def _forces(path: str | None, outputs: "dict[Target, str]", name: str, sources: 
         return {}
     if not path:
         raise click.UsageError("--contacts needs the name of a file or folder/")
-    if not options.names_one_file(path):
+    if not places.names_one_file(path):
         stems = {
             target: f"{name}.{_label(target)}" if file == "-" else Path(file).stem
             for target, file in outputs.items()
