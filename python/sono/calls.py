@@ -26,6 +26,9 @@ from sono.tightening.settings import TRIALS
 AnyCurve = CurveLike | str
 """A curve, or the name of a knot."""
 
+Rope = AnyCurve | Tight | Minimum
+"""A curve, or what a tightening or a search gave."""
+
 
 def read(path: str | os.PathLike[str]) -> Curve:
     """Read a curve from a file: rows of x y z, a blank line between components, or Geomview VECT.
@@ -42,7 +45,7 @@ def read(path: str | os.PathLike[str]) -> Curve:
     return Curve(formats.read(path).components)
 
 
-def write(path: str | os.PathLike[str], curve: AnyCurve, comments: Sequence[str] = ()) -> None:
+def write(path: str | os.PathLike[str], curve: Rope, comments: Sequence[str] = ()) -> None:
     """Write a curve to a file whose suffix names the format: .txt, .xyz, .dat or none are text, or .vect.
 
     Coordinates keep every digit, and the file appears whole or not at all; the `comments` come first. Raises
@@ -72,7 +75,7 @@ def start(name: str, variant: int = 0) -> Curve:
     return Curve(starts.start(name, variant))
 
 
-def measure(vertices: AnyCurve) -> Measures:
+def measure(vertices: Rope) -> Measures:
     """Measure a curve at the scale it has.
 
     Raises `CurveError`, a `ValueError`, for one that is no embedded closed curve. Source: J. Baranska,
@@ -86,7 +89,7 @@ def measure(vertices: AnyCurve) -> Measures:
     return curve.measure(_components(vertices))
 
 
-def forces(vertices: AnyCurve) -> Forces:
+def forces(vertices: Rope) -> Forces:
     """Find the forces that come nearest to balance on a curve, scaled to R_s = 1; see `Forces`.
 
     Raises `CurveError` for a curve that is not embedded.
@@ -98,7 +101,7 @@ def forces(vertices: AnyCurve) -> Forces:
 
 
 def tighten(
-    vertices: AnyCurve | Tight,
+    vertices: Rope,
     n: int | None = None,
     *,
     dl: float | None = None,
@@ -141,7 +144,7 @@ def tighten(
     )
 
 
-def refine(vertices: AnyCurve | Tight, n: int) -> Curve:
+def refine(vertices: Rope, n: int) -> Curve:
     """Return n vertices on the inscribed knot K_P of a rope, with equal edges on each component.
 
     Raises `CurveError` where there are too few for the curve, `ValueError` for n below 3 a component.
@@ -209,7 +212,7 @@ class Comparison(Record):
     limit_difference: float | None
 
 
-def compare(rope: AnyCurve | Tight, knot: str) -> Comparison:
+def compare(rope: Rope, knot: str) -> Comparison:
     """Compare a rope's lengths with the shortest published ropelength of a knot.
 
     Raises `CurveError` for a curve that is not embedded. The rope's type is taken as said.
@@ -224,8 +227,8 @@ def compare(rope: AnyCurve | Tight, knot: str) -> Comparison:
     return Comparison(*(get(key) for key in Comparison.__dataclass_fields__))
 
 
-def _components(vertices: AnyCurve | Tight) -> list[Any]:
+def _components(vertices: Rope) -> list[Any]:
     """Return the components of whatever stands for a curve."""
-    if isinstance(vertices, Tight):
+    if isinstance(vertices, Tight | Minimum):
         vertices = vertices.curve
     return list(starts.start(vertices)) if isinstance(vertices, str) else as_components(vertices)
