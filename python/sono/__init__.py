@@ -11,7 +11,7 @@ link; it is closed, and its last vertex does not repeat the first.
 True
 """
 
-from importlib import import_module, metadata
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -68,7 +68,9 @@ __all__ = ["__version__", "model", *sorted(_HOMES)]
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used, so that `sono --help` need not wait for numpy."""
     if name == "__version__":
-        return metadata.version("sono")
+        from importlib.metadata import version
+
+        return version("sono")
     if name == "model":
         return import_module("sono.model")
     if name not in _HOMES:
