@@ -1,5 +1,7 @@
 //! What can be wrong with the input. Not converging is a [`crate::Status`], never an error.
 
+use std::ops::RangeInclusive;
+
 use thiserror::Error;
 
 /// Why a curve or a setting was refused. `component` and `vertex` count from 0.
@@ -117,3 +119,13 @@ pub enum Error {
 
 /// A [`std::result::Result`] with this crate's [`enum@Error`].
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// Refuses a setting that lies outside what it `may` be; `range` says that in words.
+pub(crate) fn within(
+    name: &'static str,
+    value: f64,
+    may: RangeInclusive<f64>,
+    range: &'static str,
+) -> Result<()> {
+    if may.contains(&value) { Ok(()) } else { Err(Error::Setting { name, value, range }) }
+}

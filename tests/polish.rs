@@ -8,7 +8,8 @@ use common::{finish, hopf, polygon, quick, torus};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sono::polish::balance;
+use serde_json::json;
+use sono::polish::{Settings, balance};
 use sono::{Curve, Error, Outcome, Polish, Tightener, measure};
 
 /// A rough trefoil: collapsed only.
@@ -17,7 +18,11 @@ fn rough() -> Curve {
 }
 
 fn polished(curve: &Curve, n: usize) -> Polish {
-    let mut polish = Polish::new(curve, n, false, 1).unwrap();
+    polished_with(curve, n, Settings::default())
+}
+
+fn polished_with(curve: &Curve, n: usize, settings: Settings) -> Polish {
+    let mut polish = Polish::new(curve, n, false, 1, settings).unwrap();
     while polish.step() == Outcome::Running {}
     polish
 }
@@ -37,7 +42,7 @@ fn the_trefoil_of_120_vertices_is_tight_to_the_last_digit() {
 
 #[test]
 fn every_step_is_a_rope_and_the_best_one_is_kept() {
-    let mut polish = Polish::new(&rough(), 90, false, 1).unwrap();
+    let mut polish = Polish::new(&rough(), 90, false, 1, Settings::default()).unwrap();
     let mut shortest = polish.status().best.l_p;
     while polish.step() == Outcome::Running {
         let now = polish.status().best;
@@ -52,7 +57,7 @@ fn every_step_is_a_rope_and_the_best_one_is_kept() {
 #[test]
 fn a_saved_polish_goes_on_as_if_it_had_never_stopped() {
     let whole = polished(&rough(), 80);
-    let mut part = Polish::new(&rough(), 80, false, 1).unwrap();
+    let mut part = Polish::new(&rough(), 80, false, 1, Settings::default()).unwrap();
     for steps in 0.. {
         let outcome = part.step();
         if outcome != Outcome::Running {
@@ -164,8 +169,14 @@ fn far_and_slid_vertices_are_no_obstacle() {
 fn what_cannot_be_polished_is_refused() {
     let flat = [[0., 0., 0.], [2., 2., 0.], [2., 0., 0.], [0., 2., 0.]].map(DVec3::from);
     let crossing = Curve::new(vec![flat.to_vec()]).unwrap();
-    assert!(matches!(Polish::new(&crossing, 100, false, 0), Err(Error::SelfCrossing { .. })));
-    assert!(matches!(Polish::new(&rough(), 12, false, 0), Err(Error::TooCoarse { .. })));
+    assert!(matches!(
+        Polish::new(&crossing, 100, false, 0, Settings::default()),
+        Err(Error::SelfCrossing { .. })
+    ));
+    assert!(matches!(
+        Polish::new(&rough(), 12, false, 0, Settings::default()),
+        Err(Error::TooCoarse { .. })
+    ));
     // Two turns of a thin trefoil so close together that 40 edges would mix them up.
     let close = |i: usize| {
         let t = TAU * i as f64 / 400.;
@@ -173,7 +184,10 @@ fn what_cannot_be_polished_is_refused() {
         DVec3::new(r * (2. * t).cos(), r * (2. * t).sin(), 0.05 * (3. * t).sin())
     };
     let large = Curve::new(vec![(0..400).map(close).collect()]).unwrap();
-    assert!(matches!(Polish::new(&large, 40, false, 0), Err(Error::TooCoarse { .. })));
+    assert!(matches!(
+        Polish::new(&large, 40, false, 0, Settings::default()),
+        Err(Error::TooCoarse { .. })
+    ));
 }
 
 /// A long loop, its ends arcs of radius 1.02, has far to glide on its way to a circle.
@@ -193,5 +207,113 @@ fn a_long_loop_glides_to_a_circle_in_as_many_steps_as_it_takes() {
         assert_eq!(status.outcome, Outcome::Tight, "{half} {n} {status:?}");
         let circumscribed = 2. * n as f64 * (PI / n as f64).tan();
         assert!((status.best.l_p - circumscribed).abs() < 1e-6, "{half} {n} {status:?}");
+    }
+}
+
+/// Settings of which the one of that name has another value.
+fn with(name: &str, value: f64) -> Settings {
+    let mut settings = serde_json::to_value(Settings::default()).unwrap();
+    let is_whole = settings[name].is_u64();
+    settings[name] = if is_whole { json!(value as u64) } else { json!(value) };
+    serde_json::from_value(settings).unwrap()
+}
+
+fn names(settings: impl serde::Serialize) -> Vec<String> {
+    serde_json::to_value(settings).unwrap().as_object().unwrap().keys().cloned().collect()
+}
+
+#[test]
+fn settings_out_of_range_are_named_with_their_value_and_range() {
+    let triangle = Curve::new(vec![polygon(3, DVec3::X, DVec3::Y, DVec3::ZERO)]).unwrap();
+    for name in names(Settings::default()) {
+        let wrong = match name.as_str() {
+            "gliding_share" => -0.5,
+            "most_restarts" => 101.,
+            _ => 0.,
+        };
+        let error = Polish::new(&triangle, 60, false, 0, with(&name, wrong)).err().unwrap();
+        let said = format!("setting {name} = {wrong} is out of range: ");
+        assert!(error.to_string().starts_with(&said), "{error}");
+    }
+    let wrong = Settings { mu_power: f64::NAN, ..Default::default() };
+    assert!(wrong.check().is_err());
+    assert_eq!(
+        with("centred", 1000.).check().unwrap_err().to_string(),
+        "setting centred = 1000 is out of range: in [0.1, 100]"
+    );
+}
+
+#[test]
+fn no_setting_is_one_of_sono_as_well() {
+    let of_sono = names(sono::Settings::default());
+    assert!(names(Settings::default()).iter().all(|name| !of_sono.contains(name)));
+}
+
+#[test]
+fn ropes_are_valid_and_tight_at_the_limits_of_all_settings() {
+    let limits = [
+        ("first_mu", [1e-6, 10.]),
+        ("passing_mu", [1e-9, 10.]),
+        ("last_mu", [1e-14, 1e-4]),
+        ("mu_factor", [0.01, 0.9]),
+        ("mu_power", [1., 2.]),
+        ("centred", [0.1, 100.]),
+        ("contact_range", [0.1, 100.]),
+        ("least_contact_range", [0.001, 1.]),
+        ("longest_way", [0.001, 0.1]),
+        ("most_used", [0.5, 0.999]),
+        ("least_descent", [1e-8, 0.4]),
+        ("multiplier_range", [2., 1e10]),
+        ("patience", [1., f64::from(u32::MAX)]),
+        ("gliding_share", [0., 1.]),
+        ("restart_factor", [1., 1000.]),
+        ("most_restarts", [0., 100.]),
+        ("most_iterations", [1., f64::from(u32::MAX)]),
+        ("tight_residual", [1e-12, 1e-4]),
+    ];
+    assert_eq!(limits.len(), names(Settings::default()).len());
+    let rough = rough();
+    for (name, value) in limits.into_iter().flat_map(|(name, ends)| ends.map(|end| (name, end))) {
+        let passing = name == "passing_mu";
+        let mut polish = Polish::new(&rough, 60, passing, 1, with(name, value)).unwrap();
+        while polish.step() == Outcome::Running {}
+        let status = polish.status();
+        let at_once = (name, value) == ("most_iterations", 1.);
+        let expected = if at_once { Outcome::Stuck } else { Outcome::Tight };
+        assert_eq!(status.outcome, expected, "{name} {value} {status:?}");
+        assert!((status.best.r_s - 1.).abs() < 1e-12 && status.best.l_p < 33., "{status:?}");
+        assert_eq!(status.progress, if at_once { 0. } else { 1. }, "{name} {value}");
+    }
+}
+
+#[test]
+fn a_saved_polish_keeps_its_settings() {
+    let settings = Settings { mu_factor: 0.5, last_mu: 1e-8, centred: 1., ..Default::default() };
+    let whole = polished_with(&rough(), 80, settings);
+    let mut part = Polish::new(&rough(), 80, false, 1, settings).unwrap();
+    for _ in 0..5 {
+        part.step();
+    }
+    let saved = serde_json::to_string(&part).unwrap();
+    let mut resumed: Polish = serde_json::from_str(&saved).unwrap();
+    while resumed.step() == Outcome::Running {}
+    assert_eq!((resumed.best(), resumed.status()), (whole.best(), whole.status()));
+    assert_ne!(polished(&rough(), 80).status(), whole.status());
+    // One out of range is no state that can go on.
+    let edited = saved.replace(r#""mu_factor":0.5"#, r#""mu_factor":1.5"#);
+    assert!(resumed.is_sound() && !serde_json::from_str::<Polish>(&edited).unwrap().is_sound());
+}
+
+#[test]
+fn the_excess_is_as_large_as_the_last_mu() {
+    let exact = polished(&rough(), 100).status().best.l_p;
+    for last_mu in [1e-9, 1e-7, 1e-5] {
+        let settings = Settings { last_mu, ..Default::default() };
+        let status = polished_with(&rough(), 100, settings).status();
+        assert_eq!((status.outcome, status.mu), (Outcome::Tight, last_mu));
+        // 100 edges, 100 bends and 200 contacts, each of which is worth mu, give or take 10.
+        assert!((100. ..4000.).contains(&(status.excess / last_mu)), "{status:?}");
+        let longer = status.best.l_p - exact;
+        assert!(50. * last_mu < longer && longer < status.excess, "{longer} {status:?}");
     }
 }

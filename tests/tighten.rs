@@ -64,7 +64,7 @@ fn too_few_vertices_are_refused_with_a_number_that_will_do() {
 fn coarse_ropes_get_tight() {
     for n in [15, 21] {
         let annealed = finish(Tightener::anneal(&loose(), n, quick()).unwrap());
-        let mut polish = Polish::new(annealed.best(), n, false, 0).unwrap();
+        let mut polish = Polish::new(annealed.best(), n, false, 0, Default::default()).unwrap();
         while polish.step() == Outcome::Running {}
         let status = polish.status();
         assert_eq!(status.outcome, Outcome::Tight, "{n}");

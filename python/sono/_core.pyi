@@ -20,6 +20,7 @@ __all__ = [
     "Tightener",
     "balance",
     "crossings",
+    "default_polish_settings",
     "default_settings",
     "determinant",
     "loosen",
@@ -186,11 +187,12 @@ class Tightener:
 class Polish:
     """The polish of a rope."""
 
-    def __new__(cls, components: _Curve, n: int, passing: bool, seed: int) -> Polish:
+    def __new__(cls, components: _Curve, n: int, passing: bool, seed: int, settings: str = "{}") -> Polish:
         """Begin with any embedded curve, on `n` vertices in all.
 
         If it is only `passing` this n, it ends when the rope is worth refining; `seed` places the first
-        vertex. Raises `CurveError` where edges meet, strands are too close, or `n` is too small.
+        vertex, `settings` is JSON. Raises `CurveError` where edges meet, strands are too close, or `n` is
+        too small.
         """
 
     def advance(self, seconds: float) -> PolishStatusDict:
@@ -230,6 +232,9 @@ def refine(components: _Curve, n: int) -> _Components:
 
 def default_settings() -> str:
     """Return the settings that SONO has unless told otherwise, as JSON."""
+
+def default_polish_settings() -> str:
+    """Return the settings that the polish has unless told otherwise, as JSON."""
 
 def crossings(
     components: _Curve, most: int

@@ -6,17 +6,10 @@
 
 use super::direction::Direction;
 use super::problem::Unknowns;
+use super::settings::Settings;
 use super::term::Term;
 use crate::beads::SHORTEST_EDGE;
 use crate::geometry::neighbours::Pair;
-
-/// The contacts' barrier has the range 3 sqrt mu in g = r^2 - 4, but at least 0.1 l^2 and at most
-/// l^2, which is as far as a contact moves when the beads slide by half an edge: pairs beyond would
-/// only cost time.
-const RANGE_MU: f64 = 3.;
-const SHORTEST_RANGE: f64 = 0.1;
-/// Share of a constraint that a step may use up.
-const TO_THE_BOUNDARY: f64 = 0.99;
 
 /// The barrier's parameters.
 #[derive(Debug, Clone, Copy)]
@@ -28,8 +21,9 @@ pub struct Barrier {
 
 impl Barrier {
     /// The barrier of `mu` on a rope whose longest edge is `l`.
-    pub fn new(mu: f64, l: f64) -> Self {
-        Self { mu, hat: (RANGE_MU * mu.sqrt()).clamp(SHORTEST_RANGE * l * l, l * l) }
+    pub fn new(mu: f64, l: f64, settings: &Settings) -> Self {
+        let Settings { contact_range, least_contact_range, .. } = settings;
+        Self { mu, hat: (contact_range * mu.sqrt()).clamp(least_contact_range * l * l, l * l) }
     }
 
     /// w and dw/dg of a term's barrier.
@@ -77,14 +71,13 @@ fn clamped_logarithm(g: f64, hat: f64) -> f64 {
     if u < 1. { u.ln() - 2. * u + 0.5 * u * u + 1.5 } else { 0. }
 }
 
-/// The longest step a in [0, 1] along all of which a term keeps a hundredth of what it is.
-pub fn longest_step(t: &Term, step: &Direction) -> f64 {
-    longest_course(t.g, t.course(step))
+/// The longest step a in [0, 1] along all of which a term uses up at most the share `most` of what it is.
+pub fn longest_step(t: &Term, step: &Direction, most: f64) -> f64 {
+    longest_course(most * t.g, t.course(step))
 }
 
-/// The same for g + b a + c a^2.
-fn longest_course(g: f64, [b, c]: [f64; 2]) -> f64 {
-    let left = TO_THE_BOUNDARY * g;
+/// The same for g + b a + c a^2, `left` being how much of g may be used up.
+fn longest_course(left: f64, [b, c]: [f64; 2]) -> f64 {
     let discriminant = b * b - 4. * c * left;
     if discriminant <= 0. || (b >= 0. && c >= 0.) {
         return 1.;
@@ -94,9 +87,10 @@ fn longest_course(g: f64, [b, c]: [f64; 2]) -> f64 {
     step.min(1.)
 }
 
-/// The longest step a in [0, 1] along which each `x`, which goes to x + a dx, keeps a hundredth of it.
-pub fn longest_positive(changes: impl Iterator<Item = (f64, f64)>) -> f64 {
-    changes.fold(1f64, |a, (x, dx)| if dx < 0. { a.min(TO_THE_BOUNDARY * x / -dx) } else { a })
+/// The longest step a in [0, 1] along which each `x`, which goes to x + a dx, loses at most the share
+/// `most` of it.
+pub fn longest_positive(most: f64, changes: impl Iterator<Item = (f64, f64)>) -> f64 {
+    changes.fold(1f64, |a, (x, dx)| if dx < 0. { a.min(most * x / -dx) } else { a })
 }
 
 #[cfg(test)]
@@ -106,11 +100,11 @@ mod tests {
     #[test]
     fn the_longest_step_ends_where_the_constraint_does() {
         for (b, c) in [(-3., 0.), (-3., 1.), (-1., -1.), (2., -5.), (0., -4.), (-2.2, 1.)] {
-            let step = longest_course(1., [b, c]);
+            let step = longest_course(0.99, [b, c]);
             let g = |a: f64| 1. + b * a + c * a * a;
             assert!((0..=100).all(|k| g(step * f64::from(k) / 100.) >= 0.01 - 1e-12));
             assert!(step == 1. || (g(step) - 0.01).abs() < 1e-12, "{b} {c} {step}");
         }
-        assert_eq!(longest_course(1., [-1.9, 1.]), 1.);
+        assert_eq!(longest_course(0.99, [-1.9, 1.]), 1.);
     }
 }

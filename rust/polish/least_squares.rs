@@ -15,6 +15,8 @@ use crate::geometry::curve::Curve;
 const CENTRING: f64 = 0.1;
 const LAST_MU: f64 = 1e-20;
 const MOST_ITERATIONS: usize = 200;
+/// Share of a multiplier or a slack that a step may use up.
+const MOST_USED: f64 = 0.99;
 
 /// The multipliers of `terms` that come nearest to balance.
 pub fn least_squares(curve: &Curve, terms: &Terms) -> Multipliers {
@@ -67,7 +69,7 @@ impl<'a> Fit<'a> {
             p.change(mu, t.course(&self.x)[0], t.course(&step)[0])
         });
         let pairs = self.products.iter().zip(changes.iter());
-        let a = longest_positive(pairs.flat_map(|(p, d)| [(p.z, d.z), (p.s, d.s)]));
+        let a = longest_positive(MOST_USED, pairs.flat_map(|(p, d)| [(p.z, d.z), (p.s, d.s)]));
         self.x.add(a, &step);
         for (p, change) in self.products.iter_mut().zip(changes.iter()) {
             p.z += a * change.z;

@@ -3,14 +3,10 @@
 use super::barrier::{longest_positive, longest_step};
 use super::newton::Step;
 use super::problem::{Multipliers, Surroundings, Unknowns};
-use super::start::LONGEST_WAY;
+use super::settings::Settings;
 use super::term::Term;
 use super::{Best, Polish};
 
-/// Multipliers stay within this factor of mu w/g.
-const KEEP: f64 = 100.;
-/// A step must lower the barrier function by this share of what its slope promises.
-const ENOUGH: f64 = 1e-4;
 /// Rounding errors of the barrier function, as a share of it.
 const NOISE: f64 = 1e-14;
 const MOST_HALVINGS: usize = 40;
@@ -26,7 +22,8 @@ impl Polish {
         self.rope = rope;
         self.newton.learn(a);
         let thinnest = 0.01 * self.rope.l.iter().copied().fold(f64::MAX, f64::min).powi(2);
-        self.way = (4. * a * longest).clamp(thinnest.min(LONGEST_WAY), LONGEST_WAY);
+        let longest_way = self.settings.longest_way;
+        self.way = (4. * a * longest).clamp(thinnest.min(longest_way), longest_way);
         let now = Best::new(self.rope.curve.clone());
         if now.l_p < self.best.l_p {
             self.best = now;
@@ -37,17 +34,18 @@ impl Polish {
     /// The share of the step, at most `most`, that lowers the barrier function, and where it leads.
     fn search(&self, step: &Step, around: &Surroundings, most: f64) -> Option<(f64, Unknowns)> {
         let Surroundings { terms, bystanders } = around;
+        let Settings { most_used, least_descent, .. } = self.settings;
         let (rope, barrier) = (&self.rope, self.barrier());
         let pairs = self.contacts.iter().chain(bystanders).copied();
         let merit = |rope: &Unknowns| barrier.merit(rope, pairs.clone());
         let others = bystanders.iter().map(|&pair| rope.contact(pair));
         let all = terms.iter().copied().chain(others);
-        let mut a = all.fold(most, |a, t| a.min(longest_step(&t, &step.to)));
+        let mut a = all.fold(most, |a, t| a.min(longest_step(&t, &step.to, most_used)));
         let before = merit(rope);
         for _ in 0..MOST_HALVINGS {
             let moved = rope.moved(a, &step.to);
             // False where a bend's course, cubic in l, has led out after all: the merit is NaN.
-            if merit(&moved) <= before + ENOUGH * a * step.slope + NOISE * before.abs() {
+            if merit(&moved) <= before + least_descent * a * step.slope + NOISE * before.abs() {
                 return Some((a, moved));
             }
             a *= 0.5;
@@ -57,14 +55,14 @@ impl Polish {
 
     /// The multipliers after the share `a` of a step: as far along it as they stay positive.
     fn multipliers(&self, a: f64, step: &Step, around: &Surroundings) -> Multipliers {
-        let barrier = self.barrier();
+        let (barrier, factor) = (self.barrier(), self.settings.multiplier_range);
         let changes = self.z.iter().zip(step.dz.iter());
-        let a_z = longest_positive(changes.map(|(z, dz)| (*z, *dz)));
+        let a_z = longest_positive(self.settings.most_used, changes.map(|(z, dz)| (*z, *dz)));
         let moved = self.z.map_with(&step.dz, |z, dz| z + a_z * dz);
         around.terms.map_with(&moved, |t, z| {
             let [b, c] = t.course(&step.to);
             let force = barrier.force(&Term { g: t.g + a * (b + a * c), ..*t });
-            z.clamp(force / KEEP, force * KEEP)
+            z.clamp(force / factor, force * factor)
         })
     }
 }

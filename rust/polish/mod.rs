@@ -1,9 +1,9 @@
 //! The polish: a primal-dual interior-point method on the bead rope. Imports `beads`, `resample` and
 //! what these import; nothing of `sono`.
 //!
-//! `direction, system <- term <- problem <- barrier, matrix <- newton, least_squares <- forces`; on all
-//! of them the loop here, how it begins (`start`), what is near (`surroundings`), and how far a step
-//! goes (`line_search`).
+//! `direction, system <- term <- problem <- barrier, matrix <- newton, least_squares <- forces`, the
+//! barrier with the `settings`; on all of them the loop here, how it begins (`start`), what is near
+//! (`surroundings`), and how far a step goes (`line_search`).
 //!
 //! SONO converges linearly; a tight rope solves a sparse smooth optimisation problem
 //! (`problem`), and Newton's method reaches the exact state in some tens of factorisations. Every
@@ -13,7 +13,8 @@
 //! With multipliers z the perturbed conditions are grad f = sum z grad g and z g = mu w(g), w = 1
 //! for the logarithmic barrier and w = (1 - g/hat)^2 for the contacts' clamped one. An iteration is
 //! one Newton step on both (`newton`); when their error has fallen below 10 mu, mu falls, in the
-//! end to 1e-11. Lengths then exceed the local minimum by about (number of constraints) mu.
+//! end to 1e-11, unless the settings say otherwise. Lengths then exceed the local minimum by about
+//! (number of constraints) mu.
 //!
 //! The multipliers are forces: with f the rope's length, its tension is 1 on average.
 //!
@@ -27,6 +28,7 @@ mod line_search;
 mod matrix;
 mod newton;
 mod problem;
+mod settings;
 mod start;
 mod surroundings;
 mod system;
@@ -45,23 +47,7 @@ use barrier::Barrier;
 pub use forces::{Forces, balance};
 use newton::Newton;
 use problem::{Multipliers, Surroundings, Terms, Unknowns, left_over};
-
-/// The largest imbalance of forces in a tight rope, tension being 1.
-const TIGHT: f64 = 1e-8;
-/// mu falls to this share of it or to this power, whichever is less.
-const FALL: f64 = 0.2;
-const FALL_POWER: f64 = 1.2;
-/// The error at which it falls, in units of mu.
-const CENTRED: f64 = 10.;
-/// Iterations in which a rope gets tight or never does.
-const MOST_ITERATIONS: u64 = 2000;
-/// A rope that cannot move, or is still gliding at its first mu after so many steps, as one does that
-/// beads' grooves held on a coarser level, begins anew with so many times that mu, so often.
-const PATIENCE: u64 = 200;
-const MORE_ROOM: f64 = 10.;
-const MOST_RESTARTS: u32 = 3;
-/// One that still falls below this share of its length meanwhile is left to glide.
-const FAST: f64 = 0.9;
+pub use settings::Settings;
 
 /// Where a [`Polish`] stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,10 +76,11 @@ pub struct Status {
 /// ```
 /// // An ellipse of 40 beads becomes a circle of radius 1: its ropelength is nearly 2 pi.
 /// use glam::DVec3;
-/// use sono::{Curve, Outcome, Polish};
+/// use sono::{Curve, Outcome, Polish, polish::Settings};
 /// let angle = |i: usize| std::f64::consts::TAU * i as f64 / 40.;
 /// let ellipse = (0..40).map(|i| DVec3::new(angle(i).cos(), 1.2 * angle(i).sin(), 0.));
-/// let mut polish = Polish::new(&Curve::new(vec![ellipse.collect()])?, 40, false, 0)?;
+/// let ellipse = Curve::new(vec![ellipse.collect()])?;
+/// let mut polish = Polish::new(&ellipse, 40, false, 0, Settings::default())?;
 /// while polish.step() == Outcome::Running {}
 /// let status = polish.status();
 /// assert_eq!(status.outcome, Outcome::Tight);
@@ -102,6 +89,7 @@ pub struct Status {
 /// ```
 #[derive(Serialize, Deserialize)]
 pub struct Polish {
+    settings: Settings,
     rope: Unknowns,
     /// Least index distance of contacts, for each component.
     least: Vec<usize>,
@@ -179,14 +167,16 @@ impl Polish {
             if self.mu <= self.last_mu {
                 return true;
             }
-            self.mu = (FALL * self.mu).min(self.mu.powf(FALL_POWER)).max(self.last_mu);
+            let fallen =
+                (self.settings.mu_factor * self.mu).min(self.mu.powf(self.settings.mu_power));
+            self.mu = fallen.max(self.last_mu);
         }
         false
     }
 
     /// Whether the perturbed conditions hold as well as this mu is worth.
     fn is_centred(&mut self, terms: &Terms) -> bool {
-        let (barrier, most) = (self.barrier(), CENTRED * self.mu);
+        let (barrier, most) = (self.barrier(), self.settings.centred * self.mu);
         let mut products = terms.iter().zip(self.z.iter());
         self.residual = left_over(&self.rope.curve, terms, &self.z).largest(&self.rope.curve);
         self.excess = products.clone().map(|(t, z)| z * t.g).sum();
@@ -196,28 +186,33 @@ impl Polish {
     /// What comes after a step, or after none could be made.
     fn judge(&mut self, moved: bool) -> Outcome {
         let gliding = self.is_gliding();
-        if !moved && self.residual <= TIGHT && self.mu <= self.last_mu {
+        let Settings { restart_factor, most_restarts, most_iterations, tight_residual, .. } =
+            self.settings;
+        if !moved && self.residual <= tight_residual && self.mu <= self.last_mu {
             // As far as the digits go.
             return self.end();
         }
-        if self.iterations == MOST_ITERATIONS || (!moved && self.restarts == MOST_RESTARTS) {
+        if self.iterations == u64::from(most_iterations)
+            || (!moved && self.restarts == most_restarts)
+        {
             return Outcome::Stuck;
         }
-        if !moved || (gliding && self.restarts + 1 < MOST_RESTARTS) {
+        if !moved || (gliding && self.restarts + 1 < most_restarts) {
             // With so little room for its rearrangement the rope has run into a corner.
             self.restarts += 1;
-            self.begin(MORE_ROOM * self.attempt.first_mu);
+            self.begin(restart_factor * self.attempt.first_mu);
         }
         Outcome::Running
     }
 
     /// Whether it has been on its way for long, and is slow.
     fn is_gliding(&mut self) -> bool {
+        let Settings { patience, gliding_share, .. } = self.settings;
         let Attempt { first_mu, iterations, l_p } = &mut self.attempt;
-        if self.mu != *first_mu || self.iterations != *iterations + PATIENCE {
+        if self.mu != *first_mu || self.iterations != *iterations + u64::from(patience) {
             return false;
         }
-        let fast = self.best.l_p < FAST * *l_p;
+        let fast = self.best.l_p < gliding_share * *l_p;
         if fast {
             (*iterations, *l_p) = (self.iterations, self.best.l_p);
         }
@@ -233,7 +228,7 @@ impl Polish {
 
     /// The barrier of this moment.
     fn barrier(&self) -> Barrier {
-        Barrier::new(self.mu, self.rope.longest())
+        Barrier::new(self.mu, self.rope.longest(), &self.settings)
     }
 
     /// The best state so far, its R_s = 1, its centre at the origin.
@@ -249,10 +244,10 @@ impl Polish {
     /// Where it stands.
     pub fn status(&self) -> Status {
         let first_mu = self.attempt.first_mu;
-        let fallen = (first_mu / self.mu).ln() / (first_mu / self.last_mu).ln();
+        let [fallen, whole] = [self.mu, self.last_mu].map(|mu| (first_mu / mu).ln());
         Status {
             outcome: self.outcome,
-            progress: fallen.clamp(0., 1.),
+            progress: if fallen < whole { (fallen / whole).clamp(0., 1.) } else { 1. },
             iterations: self.iterations,
             factorisations: self.newton.factorisations(),
             residual: self.residual,

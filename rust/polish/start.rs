@@ -2,6 +2,7 @@
 
 use super::newton::Newton;
 use super::problem::{Grouped, Unknowns};
+use super::settings::Settings;
 use super::{Attempt, Best, Polish};
 use crate::beads::{LONGEST_EDGE, SHORTEST_EDGE, least_index_distance, most_bend};
 use crate::error::Result;
@@ -12,14 +13,6 @@ use crate::measures::measure;
 use crate::outcome::Outcome;
 use crate::resample::{refine, resampled, rope_curve};
 
-/// The last barrier parameter.
-const LAST_MU: f64 = 1e-11;
-/// The first one, and the last on a level that only leads to the next, in units of dl^3: a rope's
-/// length is then off by as much as its discretisation, or by a little less.
-const FIRST_MU: f64 = 0.01;
-const PASSING_MU: f64 = 3e-3;
-/// Longest way of a bead in one step, in radii.
-pub const LONGEST_WAY: f64 = 0.1;
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
 const UNEQUAL: f64 = 0.04;
 /// Share by which a bend's condition may be violated by a rope that is taken as it is.
@@ -32,20 +25,30 @@ impl Polish {
     /// it is only `passing` this n, with one that is good enough to be refined.
     ///
     /// # Errors
-    /// [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], and those of [`resampled`].
-    pub fn new(curve: &Curve, n: usize, passing: bool, seed: u64) -> Result<Self> {
+    /// [`crate::Error::Setting`], [`crate::Error::SelfCrossing`], [`crate::Error::TooThin`], and those of
+    /// [`resampled`].
+    pub fn new(
+        curve: &Curve,
+        n: usize,
+        passing: bool,
+        seed: u64,
+        settings: Settings,
+    ) -> Result<Self> {
+        settings.check()?;
+        let Settings { first_mu, passing_mu, last_mu, longest_way, .. } = settings;
         let best = Best::new(rope_on(curve, n, seed)?);
         let dl = best.curve.length() / n as f64;
         let rope = Unknowns::new(best.curve.clone());
-        let last_mu = if passing { LAST_MU.max(PASSING_MU * dl.powi(3)) } else { LAST_MU };
+        let last_mu = if passing { last_mu.max(passing_mu * dl.powi(3)) } else { last_mu };
         let mut polish = Self {
+            settings,
             least: first_least(&rope),
             rope,
             contacts: vec![],
             z: Grouped::default(),
             mu: 0.,
             last_mu,
-            way: (2. * dl * dl).min(LONGEST_WAY),
+            way: (2. * dl * dl).min(longest_way),
             newton: Newton::default(),
             iterations: 0,
             residual: f64::MAX,
@@ -55,7 +58,7 @@ impl Polish {
             outcome: Outcome::Running,
             best,
         };
-        polish.begin(last_mu.max(FIRST_MU * dl.powi(3)));
+        polish.begin(last_mu.max(first_mu * dl.powi(3)));
         Ok(polish)
     }
 
@@ -84,7 +87,8 @@ impl Polish {
         let positive = |x: &f64| x.is_finite() && *x > 0.;
         let numbers = [self.mu, self.last_mu, self.attempt.first_mu, self.way];
         let (z, contacts) = (&self.z, &self.contacts);
-        curve.is_sound()
+        self.settings.check().is_ok()
+            && curve.is_sound()
             && self.best.curve.is_sound()
             && (self.best.curve.n(), self.best.curve.components()) == (n, components)
             && (l.len(), self.least.len()) == (components, components)

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::errors::released;
-use crate::{Outcome, Settings};
+use crate::{Outcome, Settings, polish};
 
 /// The settings that SONO has unless told otherwise, as JSON.
 #[pyfunction]
@@ -16,8 +16,14 @@ pub fn default_settings() -> String {
     serde_json::to_string(&Settings::default()).expect("plain numbers")
 }
 
+/// The settings that the polish has unless told otherwise, as JSON.
+#[pyfunction]
+pub fn default_polish_settings() -> String {
+    serde_json::to_string(&polish::Settings::default()).expect("plain numbers")
+}
+
 /// Settings given as JSON.
-pub fn settings_from_json(settings: &str) -> PyResult<Settings> {
+pub fn settings_from_json<T: DeserializeOwned>(settings: &str) -> PyResult<T> {
     serde_json::from_str(settings).map_err(|e| PyValueError::new_err(format!("settings: {e}")))
 }
 

@@ -24,7 +24,7 @@ mod _core {
     #[pymodule_export]
     use super::curve::{loosen, refine, simplify};
     #[pymodule_export]
-    use super::engine::default_settings;
+    use super::engine::{default_polish_settings, default_settings};
     #[pymodule_export]
     use super::errors::{CurveError, PanicError};
     #[pymodule_export]

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
 use super::dict::{Dict, dict};
-use super::engine::{budget, name_of, restored, state};
+use super::engine::{budget, name_of, restored, settings_from_json, state};
 use super::errors::{released, tried};
 use super::forces::{ForceArrays, force_arrays};
 use super::measures::measures;
@@ -19,21 +19,25 @@ fn status<'py>(py: Python<'py>, of: &Status) -> PyResult<Dict<'py>> {
 }
 
 /// The polish of a rope on n vertices in all; if only `passing`, it ends when that is worth refining.
+/// `settings` is JSON.
 #[pyclass(module = "sono._core")]
 pub struct Polish(crate::Polish);
 
 #[pymethods]
 impl Polish {
     #[new]
+    #[pyo3(signature = (components, n, passing, seed, settings="{}"))]
     fn new(
         py: Python<'_>,
         components: Given<'_>,
         n: usize,
         passing: bool,
         seed: u64,
+        settings: &str,
     ) -> PyResult<Self> {
         let curve = curve(components)?;
-        tried(py, || crate::Polish::new(&curve, n, passing, seed)).map(Self)
+        let settings = settings_from_json(settings)?;
+        tried(py, || crate::Polish::new(&curve, n, passing, seed, settings)).map(Self)
     }
 
     /// Works for about so many seconds, unless done before, with the interpreter released.

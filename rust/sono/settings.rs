@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Result, within};
 
 /// Parameters of SONO; lengths in units of the rope's radius. Unknown names are refused.
 ///
@@ -47,21 +47,14 @@ impl Default for Settings {
 
 impl Settings {
     /// # Errors
-    /// [`Error::Setting`] names the first parameter that is out of range.
+    /// [`crate::Error::Setting`] names the first parameter that is out of range.
     pub fn check(&self) -> Result<()> {
-        let within = |name, value: f64, least: f64, most: f64, range| {
-            if (least..=most).contains(&value) {
-                Ok(())
-            } else {
-                Err(Error::Setting { name, value, range })
-            }
-        };
-        let (small, half) = (f64::MIN_POSITIVE, "in (0, 0.5]");
-        within("c_1", self.c_1, small, 0.5, half)?;
-        within("c_2", self.c_2, small, 0.5, half)?;
-        within("anneal_tolerance", self.anneal_tolerance, small, 0.5, half)?;
-        within("tolerance", self.tolerance, 1e-12, 1e-2, "in [1e-12, 1e-2]")?;
-        within("anneal_sweeps", self.anneal_sweeps.into(), 1., f64::MAX, "at least 1")?;
-        within("settle_sweeps", self.settle_sweeps.into(), 1., f64::MAX, "at least 1")
+        let (half, range) = (f64::MIN_POSITIVE..=0.5, "in (0, 0.5]");
+        within("c_1", self.c_1, half.clone(), range)?;
+        within("c_2", self.c_2, half.clone(), range)?;
+        within("anneal_tolerance", self.anneal_tolerance, half, range)?;
+        within("tolerance", self.tolerance, 1e-12..=1e-2, "in [1e-12, 1e-2]")?;
+        within("anneal_sweeps", self.anneal_sweeps.into(), 1.0..=f64::MAX, "at least 1")?;
+        within("settle_sweeps", self.settle_sweeps.into(), 1.0..=f64::MAX, "at least 1")
     }
 }
