@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from sono.searching import Minimum as Minimum
     from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
+    from sono.tightening import Settings as Settings
     from sono.tightening import Stopped as Stopped
     from sono.tightening import Tight as Tight
 
@@ -45,6 +46,7 @@ _HOMES = {
     "Measures": "sono.curve",
     "FormatError": "sono.formats",
     "KnotTypeError": "sono.tightening",
+    "Settings": "sono.tightening",
     "Progress": "sono.tightening",
     "Stopped": "sono.tightening",
     "Tight": "sono.tightening",

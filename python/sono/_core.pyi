@@ -54,7 +54,7 @@ class CurveError(ValueError):
 class PanicError(RuntimeError):
     """The core came upon a bug of its own. What it worked on is lost, and nothing else."""
 
-class MeasuresDict(TypedDict):
+class _Measures(TypedDict):
     """What a curve measures, in its own unit; the type has no class at run time.
 
     Baranska, Pieranski, Rawdon, "Ropelength of tight polygonal knots", section 2.
@@ -85,7 +85,7 @@ class MeasuresDict(TypedDict):
     l_a: float | None
     """Weighted ropelength (4 L_p + L_c)/5, an estimate."""
 
-class StatusDict(TypedDict):
+class _Status(TypedDict):
     """Where SONO stands; the type has no class at run time."""
 
     outcome: _Outcome
@@ -101,10 +101,10 @@ class StatusDict(TypedDict):
     """Largest overlap of two beads that the last sweep met, R = 1."""
     dispersion: float
     """Largest |dl/s_i - 1| that it met."""
-    best: MeasuresDict
+    best: _Measures
     """Of the best state so far, R_s = 1."""
 
-class PolishStatusDict(TypedDict):
+class _PolishStatus(TypedDict):
     """Where a `Polish` stands; the type has no class at run time."""
 
     outcome: _Outcome
@@ -119,7 +119,7 @@ class PolishStatusDict(TypedDict):
     """Barrier parameter: each constraint's product of multiplier and slack."""
     excess: float
     """Sum of these products: in balance, by how much the length exceeds the local minimum, R = 1."""
-    best: MeasuresDict
+    best: _Measures
     """Of the best state so far, R_s = 1."""
 
 @final
@@ -132,10 +132,10 @@ class Collapse:
         Raises `CurveError` where edges meet or, if `loosened`, strands are too close for a rope.
         """
 
-    def advance(self, seconds: float) -> StatusDict:
+    def advance(self, seconds: float) -> _Status:
         """Work for about so long, unless done before. Raises `CurveError` where it cannot be loosened."""
 
-    def status(self) -> StatusDict:
+    def status(self) -> _Status:
         """Return where it stands."""
 
     def loosened(self) -> _Components | None:
@@ -167,10 +167,10 @@ class Tightener:
         Raises `CurveError` where `n` is too small.
         """
 
-    def advance(self, seconds: float) -> StatusDict:
+    def advance(self, seconds: float) -> _Status:
         """Work for about so long, unless done before."""
 
-    def status(self) -> StatusDict:
+    def status(self) -> _Status:
         """Return where it stands."""
 
     def best(self) -> _Components:
@@ -195,10 +195,10 @@ class Polish:
         too small.
         """
 
-    def advance(self, seconds: float) -> PolishStatusDict:
+    def advance(self, seconds: float) -> _PolishStatus:
         """Work for about so long, unless done before."""
 
-    def status(self) -> PolishStatusDict:
+    def status(self) -> _PolishStatus:
         """Return where it stands."""
 
     def best(self) -> _Components:
@@ -221,7 +221,7 @@ def balance(components: _Curve) -> _Forces:
     where edges meet.
     """
 
-def measure(components: _Curve) -> MeasuresDict:
+def measure(components: _Curve) -> _Measures:
     """Return what a curve measures. Raises `CurveError` where edges meet."""
 
 def refine(components: _Curve, n: int) -> _Components:

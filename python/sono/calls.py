@@ -21,7 +21,7 @@ from sono.searching.search import KEPT, Search
 from sono.searching.trials import FINE_EDGE, Source, Watch, finish
 from sono.tables import published
 from sono.tightening import Method, Progress, Tight
-from sono.tightening.settings import TRIALS
+from sono.tightening.settings import TRIALS, Changes, Settings
 
 AnyCurve = CurveLike | str
 """A curve, or the name of a knot."""
@@ -109,15 +109,15 @@ def tighten(
     trials: int = TRIALS,
     seed: int | None = None,
     time_limit: float | None = None,
-    settings: dict[str, Any] | None = None,
+    settings: Settings | Changes | None = None,
     watch: Callable[[Progress], object] = lambda _: None,
 ) -> Tight:
     """Tighten a curve of any scale to a rope of radius 1.
 
     The rope has `n` vertices, all components together, 480 by default; or its edges are `dl` radii long, at
     most 1, as far as n is a whole number. With the method "both" SONO finds shapes in up to `trials` trials
-    and the polish makes the best one exact; "sono" and "polish" do without the other. `settings` replaces
-    some of SONO's, among them the seed.
+    and the polish makes the best one exact; "sono" and "polish" do without the other. `settings` are the
+    parameters of both engines, or some of them by name; the seed is one.
 
     `watch` is called about ten times a second. If it returns True, and after `time_limit` seconds, the best
     state so far is returned, with `converged` False; what it raises ends the run and passes through.

@@ -100,7 +100,7 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     "pairs",
     multiple=True,
     metavar="NAME=VALUE",
-    help="Change a setting of SONO, such as anneal_sweeps=400000.",
+    help="Change a setting, such as anneal_sweeps=400000 or last_mu=1e-9.",
 )
 @options.parallel("Knots tightened at the same time.")
 @options.checkpoint("Keep the state of each run here.")

@@ -4,12 +4,11 @@ import math
 import time
 from collections.abc import Callable
 from operator import index
-from typing import Any
 
 from sono.curve import CurveLike, as_components
 from sono.tightening.results import Progress, Stopped, Tight
 from sono.tightening.run import Run
-from sono.tightening.settings import TRIALS, Method
+from sono.tightening.settings import TRIALS, Changes, Method, Settings
 
 DEFAULT_N = 480
 
@@ -27,11 +26,11 @@ def tighten(
     trials: int = TRIALS,
     seed: int | None = None,
     time_limit: float | None = None,
-    settings: dict[str, Any] | None = None,
+    settings: Settings | Changes | None = None,
     watch: Callable[[Progress], object] = lambda _: None,
 ) -> Tight:
     """Tighten a curve of any scale to a rope of n vertices, or of edges dl; see `sono.tighten`."""
-    settings = settings or {}
+    settings = settings.changes() if isinstance(settings, Settings) else dict(settings or {})
     if seed is not None:
         if "seed" in settings:
             raise ValueError("the seed is given twice, as an argument and in the settings")

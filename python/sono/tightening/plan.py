@@ -14,7 +14,7 @@ from typing import Any, Literal, Self, TypeVar, cast
 from sono._core import Polish, Tightener
 from sono.curve import Components, Measures, measure, packed, unpacked
 from sono.tightening.engines import Engine, status_of
-from sono.tightening.settings import TRIALS, Method, default_settings
+from sono.tightening.settings import TRIALS, Method, default_settings, of_polish, of_sono
 from sono.tightening.targets import COARSE, Target, aimed, coarsest
 from sono.tightening.trial import HOT, Recipe, Trial
 
@@ -119,8 +119,8 @@ class Plan:
             return self.trial.begin()
         (stage, n), seed = self.rungs[0], self.seed(offset)
         if stage in ("climb", "polish"):
-            return Polish(self.curve, n, stage == "climb", seed)
-        settings = json.dumps(self.settings | {"seed": seed})
+            return Polish(self.curve, n, stage == "climb", seed, of_polish(self.settings))
+        settings = json.dumps(of_sono(self.settings) | {"seed": seed})
         return Tightener(self.curve, cast("Literal['anneal', 'reanneal', 'settle']", stage), n, settings)
 
     def take(self, engine: Engine) -> None:
@@ -214,10 +214,11 @@ class Plan:
         # Edges of other lengths find other shapes; multiples of the golden ratio spread them evenly.
         least, most = (0.92, 1.1) if _is_hot(self.tried) else (0.6, 0.9)
         edge = least + (most - least) * ((0.5 + self.tried // 2 * (math.sqrt(5) - 1) / 2) % 1)
-        settings = self.settings | {"seed": self.seed()}
+        settings = of_sono(self.settings) | {"seed": self.seed()}
         if self.method == "both":
             settings |= _anneal_of(self.tried, default_settings() | self.settings)
-        recipe = Recipe(settings, settings, self.seed(), edge, self.targets[0])
+        polish = of_polish(self.settings)
+        recipe = Recipe(settings, settings, self.seed(), edge, self.targets[0], polish=polish)
         self.curve, self.rungs = self.start, []
         self.trial = Trial(recipe, self.start, self.loosened)
 

@@ -23,10 +23,10 @@ HOT = 0.5
 class Recipe:
     """How a trial is made.
 
-    `collapse` and `anneal` are the settings of these stages; beads of the anneal lie `edge` radii apart, as
-    far as the shape has so many. That has the vertices of the `target`, halved as long as its edges stay
-    below `COARSE`; it has edges of `TRIAL_EDGE` where there is no target, and is polished only as far as is
-    worth refining.
+    `collapse` and `anneal` are the settings of these stages, `polish` those of the last one as JSON; beads of
+    the anneal lie `edge` radii apart, as far as the shape has so many. That has the vertices of the `target`,
+    halved as long as its edges stay below `COARSE`; it has edges of `TRIAL_EDGE` where there is no target,
+    and is polished only as far as is worth refining.
     """
 
     collapse: dict[str, Any]
@@ -34,6 +34,7 @@ class Recipe:
     seed: int
     edge: float
     target: Target | None = None
+    polish: str = "{}"
 
 
 @dataclass
@@ -56,7 +57,7 @@ class Trial:
         if self.stage == "collapse":
             return Collapse(self.curve, self.loosened, json.dumps(recipe.collapse))
         if self.stage == "trial":
-            return Polish(self.curve, self.n, recipe.target is None, recipe.seed)
+            return Polish(self.curve, self.n, recipe.target is None, recipe.seed, recipe.polish)
         try:
             return Tightener(self.curve, "anneal", self.n, json.dumps(recipe.anneal))
         except CurveError:
