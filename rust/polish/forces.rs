@@ -35,8 +35,8 @@ impl Forces {
     /// The forces that the multipliers `z` of `terms` are.
     pub(super) fn new(curve: &Curve, terms: &Terms, z: &Multipliers) -> Self {
         let force = terms.map_with(z, |t, z| 2. * z * t.y.length());
-        // At the neighbours, a tension's arm of one edge away.
-        let arms = terms.edges.iter().map(|edge| edge.y.length());
+        // At the neighbours, a tension's arm of one edge away, which is no shorter where that is slack.
+        let arms = (0..curve.components()).flat_map(|c| curve.edge_lengths(c));
         let couple = force.bends.iter().zip(arms).map(|(force, arm)| force * arm).collect();
         let ends = terms.contacts.iter().map(|t| (t.beads[0], t.beads[1]));
         let contacts = ends.zip(force.contacts).map(|((i, j), force)| (i, j, force)).collect();
@@ -89,5 +89,24 @@ fn touching(rope: &Unknowns) -> Vec<Pair> {
 fn relax(t: &mut Term, least: f64) {
     if t.y.length() < least {
         (t.y, t.h) = (DVec3::ZERO, [0.; 2]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_couple_beside_a_slack_edge_has_the_same_arm() {
+        let v = [[0., 0., 0.], [3., 0., 0.], [3., 2., 0.], [0., 2., 1.]].map(DVec3::from);
+        let rope = Unknowns::new(Curve::new(vec![v.to_vec()]).unwrap());
+        let mut terms = rope.terms(&[]);
+        let z = terms.map(|_| 1.);
+        let taut = Forces::new(&rope.curve, &terms, &z);
+        relax(&mut terms.edges[1], 3.);
+        let slack = Forces::new(&rope.curve, &terms, &z);
+        assert_eq!((taut.tension[1], slack.tension[1]), (4., 0.));
+        assert_eq!(slack.couple, taut.couple);
+        assert!(taut.couple.iter().all(|&couple| couple > 1.));
     }
 }
