@@ -16,7 +16,7 @@ from conftest import QUICK, Sono, Spawn, vertices
 
 from sono import formats, measure, starts, tables
 from sono._core import PanicError
-from sono.cli import options
+from sono.cli import places
 from sono.jobs import checkpoints, task
 from sono.tightening import Run
 
@@ -566,7 +566,7 @@ def test_a_result_that_cannot_be_written_is_not_lost(
     sono(*line, "-o", "whole/")
     (folder / "3_1.n60.txt").mkdir()
     with monkeypatch.context() as later:  # as if it had been made after the names were tried
-        later.setattr(options, "_try", lambda path: None)
+        later.setattr(places, "_try", lambda path: None)
         result = sono(*line, "--force")
     assert result.exit_code == 1
     assert len(result.stdout.splitlines()) == 2
