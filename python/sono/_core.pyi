@@ -118,7 +118,7 @@ class _PolishStatus(TypedDict):
     mu: float
     """Barrier parameter: each constraint's product of multiplier and slack."""
     excess: float
-    """Sum of these products: in balance, by how much the length exceeds the local minimum, R = 1."""
+    """Sum of these products: in balance, at most by so much the length exceeds the local minimum, R = 1."""
     best: _Measures
     """Of the best state so far, R_s = 1."""
 
