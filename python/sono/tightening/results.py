@@ -31,8 +31,8 @@ class Tight(Record):
     Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
     those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
     constraint's multiplier and slack, and `excess`, the sum of these products, tells by how much at most a
-    converged rope is longer than the local minimum. Otherwise these are None. No forces are fitted to a rope that was
-    stopped.
+    converged rope is longer than the local minimum. Otherwise these are None. No forces are fitted to a rope
+    that was stopped.
     """
 
     curve: Curve
