@@ -2,20 +2,13 @@
 
 import os
 import sys
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from sono.cli import options, places
-from sono.cli.runner import Batch, Show
-
-if TYPE_CHECKING:
-    from sono.jobs.atlas import Atlas
-    from sono.jobs.result import Result
-    from sono.jobs.search import SearchJob
+from sono.cli.runner import Batch
 
 COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference", "l_c_difference", "type")
 
@@ -65,7 +58,8 @@ def command(
     # Imported here, since numpy would make --help wait.
     from sono import starts
     from sono.jobs.atlas import Atlas
-    from sono.jobs.search import SearchJob, spent
+    from sono.jobs.atlasjob import AtlasJob, atlas_search
+    from sono.jobs.search import spent
 
     atlas = Atlas(Path(folder))
     if "-" in sources:
@@ -75,67 +69,15 @@ def command(
     names = sources or [row["knot"] for row in starts.table("knots")]
     options.tell_of_shadows(names, quiet)
     with options.workers(jobs, cluster) as workers:
-        work = [
-            _AtlasJob(
-                atlas,
-                places.knot_name(source).split(".")[0] if os.path.isfile(source) else source,
-                SearchJob(
-                    source,
-                    source,
-                    str(Path(checkpoint, f"{source}.s{seed}.tight.txt")),
-                    workers,
-                    trials,
-                    seed=seed,
-                    minima=1,
-                    checkpoint=Path(checkpoint, f"{source}.s{seed}.json"),
-                    resume=True,
-                    way_on="the next --update goes on from here",
-                )
-                if update and not os.path.isfile(source)
-                else None,
-                source if os.path.isfile(source) else None,
-            )
-            for source in names
-        ]
+        searches = partial(atlas_search, folder=checkpoint, workers=workers, trials=trials, seed=seed)
+        work = [AtlasJob.of(atlas, source, searches if update else None) for source in names]
         if any(job.file for job in work) and not update:
             raise click.UsageError("give --update to take ropes from files into the atlas")
         paths = [path for job in work if job.search for path in job.search.files()]
         paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
         places.prepare(paths, [], False)
         code = Batch(options.writer(format_, columns), quiet).run(work, workers.count)
-    searches = [job.search.checkpoint for job in work if job.search]
-    if searches and not quiet:
-        options.complain(spent(searches))
+    searched = [job.search.checkpoint for job in work if job.search]
+    if searched and not quiet:
+        options.complain(spent(searched))
     sys.exit(code)
-
-
-@dataclass(frozen=True)
-class _AtlasJob:
-    """One knot of the atlas: to be searched for, taken from a file, or checked."""
-
-    atlas: "Atlas"
-    name: str
-    search: "SearchJob | None"
-    file: str | None
-
-    def results(self, show: Show) -> "Iterator[Result]":
-        """Do it."""
-        from sono.formats.ropefile import TIGHT
-        from sono.jobs.result import Result
-        from sono.tightening import Stopped
-
-        file = self.file
-        if self.search:
-            for result in self.search.results(show):
-                yield replace(result, row=None)
-                if result.row and result.row["status"] == TIGHT:
-                    file = self.search.output
-            if not file:
-                return
-        try:
-            taken = self.atlas.take(self.name, file, lambda: show(1, "polish")) if file else None
-            yield Result(taken or self.atlas.checked(self.name))
-        except ValueError as error:  # FormatError, or another knot type
-            yield Result(None, str(error))
-        except Stopped as why:
-            yield Result(None, f"{self.name}: {why}; not taken into the atlas")

@@ -82,13 +82,13 @@ def command(
                 name,
                 path,
                 workers,
-                trials,
-                time_limit,
-                seed,
-                dl,
-                minima,
-                Path(checkpoint, f"{name}.search.json") if checkpoint else None,
-                resume,
+                trials=trials,
+                time_limit=time_limit,
+                seed=seed,
+                dl=dl,
+                minima=minima,
+                checkpoint=Path(checkpoint, f"{name}.search.json") if checkpoint else None,
+                resume=resume,
             )
             for source, name, path in _plan(sources, output)
         ]

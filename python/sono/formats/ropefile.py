@@ -79,7 +79,8 @@ class Searched:
         if not (line := _SEARCHED.search(text)):
             return None
         variant, seed, hits, trials, seconds = (int(number or 0) for number in line.groups()[:5])
-        return cls(variant, seed, hits, trials, seconds, float(line[6]) if line[6] else None)
+        limit = float(line[6]) if line[6] else None
+        return cls(variant, seed, hits=hits, trials=trials, seconds=seconds, limit=limit)
 
 
 @dataclass(frozen=True)

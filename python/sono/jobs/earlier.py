@@ -81,9 +81,10 @@ def left_in(job: Quest, origin: str, source: Source, look: Watch) -> Earlier | N
     residual = patiently(partial(forces, file.components), look).residual
     tight = residual <= KEPT_RESIDUAL
     row = as_row(job.name, output, measures, status=TIGHT if tight else STOPPED, residual=residual)
-    rope = Minimum(0, measures.l_a or math.inf, tight, residual, file.components, [])
+    rope = Minimum(0, measures.l_a or math.inf, tight, residual=residual, curve=file.components, met=[])
     finished, work = header.status == TIGHT, header.searched
     if not work or not work.trials:
         return Earlier(row, rope, finished)
     row = {**row, "variant": work.variant, "hits": work.hits, "trials": work.trials}
-    return Earlier(row, rope, finished, work.seed, work.trials, work.limit or work.seconds)
+    limit = work.limit or work.seconds
+    return Earlier(row, rope, finished, seed=work.seed, trials=work.trials, limit=limit)

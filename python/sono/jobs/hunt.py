@@ -103,11 +103,7 @@ class Hunt:
 
     def unrefined(self) -> list[Minimum]:
         """Return the best shape of a search that ended before any was refined."""
-        return [
-            Minimum(shape.variant, shape.length, False, None, shape.curve, [shape.radii], shape.hits)
-            for shape in self.search.shapes[:1]
-            if shape.curve
-        ]
+        return [Minimum.of(shape) for shape in self.search.shapes[:1]]
 
     def finer(self, minimum: Minimum, n: int) -> Minimum | None:
         """Polish a rope on n vertices, for which a search that is over has only a moment."""

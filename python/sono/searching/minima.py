@@ -6,7 +6,7 @@ minimum are alike in their radii; minima themselves are told apart on finer edge
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from typing import Any, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,19 @@ class Minimum(Record):
     curve: Components
     met: list[Radii]
     hits: int = 0
+
+    @classmethod
+    def of(cls, shape: Shape) -> Self:
+        """Return a shape as a minimum that has not been refined."""
+        return cls(
+            shape.variant,
+            shape.length,
+            tight=False,
+            residual=None,
+            curve=shape.curve or [],
+            met=[shape.radii],
+            hits=shape.hits,
+        )
 
     @property
     def measures(self) -> Measures:

@@ -115,7 +115,7 @@ def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
             return None
         curve, length = polish.best(), status_of(polish).best.l_a_or_l_p
         if has_edges(n, length, FINE_EDGE):
-            return _replaced(Minimum(shape.variant, 0, False, 0, [], [shape.radii]), polish)
+            return _replaced(Minimum.of(shape), polish)
     return None
 
 
