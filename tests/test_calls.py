@@ -3,11 +3,12 @@
 import copy
 import json
 import pickle
+import re
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -69,6 +70,10 @@ def test_a_curve_is_like_the_list_of_its_components() -> None:
     for wrong in (np.zeros((4, 2)), [np.zeros(4)], 5.0):
         with pytest.raises(ValueError, match=r"vertices must have the shape \(n, 3\)"):
             Curve(wrong)
+    with pytest.raises(ValueError, match="component 1 has 2 vertices; a closed curve has 3 at least"):
+        Curve([SQUARE, SQUARE[:2]])
+    with pytest.raises(ValueError, match="vertex 2 of component 0 is not finite"):
+        Curve(SQUARE * [[1], [1], [np.nan], [1]])
 
 
 @pytest.mark.parametrize("make", [np.array, lambda c: [c], Curve, lambda c: c.tolist()])
@@ -147,7 +152,7 @@ def test_comparisons_say_what_they_compare_with() -> None:
     assert found.published == pytest.approx(32.7436, abs=1e-3)
     assert found.source
     assert found.l_a_difference == pytest.approx((found.l_a or 0) - (found.published or 0))
-    assert sono.compare("Hopf", "nonsense").published is None
+    assert sono.compare("Hopf", "T(7,3)").published is None
 
 
 def test_results_cross_processes() -> None:
@@ -161,3 +166,41 @@ def test_what_there_is_can_be_listed() -> None:
         assert name.startswith("__") or getattr(sono, name).__doc__
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = sono.nonsense
+
+
+@pytest.mark.parametrize(
+    ("call", "why"),
+    [
+        (lambda: sono.refine("3_1", 10**9), "n = 1000000000 is no whole number from 3 to 500000"),
+        (lambda: sono.refine("3_1", -1), "n = -1 is no whole number from 3 to 500000"),
+        (lambda: sono.tighten("3_1", cast(Any, 60.5)), "n = 60.5 is no whole number"),
+        (lambda: sono.tighten("3_1", True), "n = True is no whole number"),
+        (lambda: sono.tighten("3_1", 60, trials=cast(Any, "x")), "trials = 'x' is no whole number"),
+        (lambda: sono.tighten("3_1", 60, seed=cast(Any, "x")), "seed = 'x' is no whole number"),
+        (lambda: sono.tighten("nofile.txt", 60), "sono.read reads a file"),
+        (lambda: sono.search("3_1", trials=0), "trials = 0 is no whole number of 1 at least"),
+        (lambda: sono.search("3_1", jobs=0), "jobs = 0 is no whole number from 1 to 256"),
+        (lambda: sono.search("3_1", minima=0), "minima = 0 is no whole number of 1 at least"),
+        (lambda: sono.search("3_1", seed=-1), "seed = -1 is no whole number"),
+        (lambda: sono.search("3_1", dl=float("nan")), "dl = nan is no edge length"),
+        (lambda: sono.start(cast(Any, 31)), "31 is no name of a knot"),
+        (lambda: sono.start("3_1", cast(Any, 1.5)), "variant = 1.5 is no whole number"),
+        (lambda: sono.compare("3_1", "nosuch"), "'nosuch' is no name of a knot"),
+        (lambda: sono.compare("3_1", cast(Any, SQUARE)), "is no name of a knot"),
+        (lambda: sono.write("x.txt", SQUARE * np.nan), "vertex 0 of component 0 is not finite"),
+    ],
+)
+def test_wrong_arguments_are_named(call: Callable[[], Any], why: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(why)):
+        call()
+
+
+def test_what_a_call_gave_goes_in_like_a_curve(tight: Tight) -> None:
+    minimum = sono.search("3_1", trials=1)[0]
+    assert Curve(cast(Any, tight)) == tight.curve
+    assert sono.measure(minimum) == minimum.measures
+    assert minimum.to_dict()["length"] == minimum.measures.length
+    assert sono.refine(tight, 100).n == 100
+    assert tight.forces
+    with pytest.raises(ValueError, match="read-only"):
+        tight.forces.tension[0] = 1

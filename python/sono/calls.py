@@ -5,11 +5,13 @@ name of a knot. It is closed, and its last vertex does not repeat the first. Len
 vertices, ropelengths are lengths over the RADIUS of the rope.
 """
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias, cast
 
 from sono import _core, curve, formats, starts, tightening
 from sono.curve import Curve as Curve
@@ -18,15 +20,16 @@ from sono.jobs.workers import Threads
 from sono.records import Record
 from sono.searching.minima import Minimum, merged
 from sono.searching.search import KEPT, Search
-from sono.searching.trials import FINE_EDGE, Source, Watch, finish
+from sono.searching.trials import FINE_EDGE, Source, Watch, finish, unwatched
 from sono.tables import published
 from sono.tightening import Method, Progress, Tight
-from sono.tightening.settings import TRIALS, Changes, Settings
+from sono.tightening.once import unseen
+from sono.tightening.settings import LEAST_DL, MOST, MOST_DL, TRIALS, Changes, Settings, whole
 
-AnyCurve = CurveLike | str
+AnyCurve: TypeAlias = "CurveLike | str"
 """A curve, or the name of a knot."""
 
-Rope = AnyCurve | Tight | Minimum
+Rope: TypeAlias = "AnyCurve | Tight | Minimum"
 """A curve, or what a tightening or a search gave."""
 
 
@@ -45,13 +48,13 @@ def read(path: str | os.PathLike[str]) -> Curve:
     return Curve(formats.read(path).components)
 
 
-def write(path: str | os.PathLike[str], curve: Rope, comments: Sequence[str] = ()) -> None:
+def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[str] = ()) -> None:
     """Write a curve to a file whose suffix names the format: .txt, .xyz, .dat or none are text, or .vect.
 
     Coordinates keep every digit, and the file appears whole or not at all; the `comments` come first. Raises
     `FormatError` where it cannot be written.
     """
-    formats.write(path, _components(curve), comments)
+    formats.write(path, Curve(_components(curve)), [comments] if isinstance(comments, str) else comments)
 
 
 def names() -> list[str]:
@@ -72,7 +75,9 @@ def start(name: str, variant: int = 0) -> Curve:
     >>> start("3_1"), len(start("Hopf"))
     (Curve(69 vertices), 2)
     """
-    return Curve(starts.start(name, variant))
+    if not isinstance(name, str):
+        raise ValueError(f"{name!r} is no name of a knot")
+    return Curve(starts.start(name, whole("variant", variant, -(10**12))))
 
 
 def measure(vertices: Rope) -> Measures:
@@ -110,7 +115,7 @@ def tighten(
     seed: int | None = None,
     time_limit: float | None = None,
     settings: Settings | Changes | None = None,
-    watch: Callable[[Progress], object] = lambda _: None,
+    watch: Callable[[Progress], object] = unseen,
 ) -> Tight:
     """Tighten a curve of any scale to a rope of radius 1.
 
@@ -147,12 +152,13 @@ def tighten(
 def refine(vertices: Rope, n: int) -> Curve:
     """Return n vertices on the inscribed knot K_P of a rope, with equal edges on each component.
 
-    Raises `CurveError` where there are too few for the curve, `ValueError` for n below 3 a component.
+    Raises `CurveError` where there are too few for the curve, `ValueError` for n below 3 a component or above
+    500,000.
 
     >>> refine(tighten("3_1", 60), 240)
     Curve(240 vertices)
     """
-    return Curve(_core.refine(_components(vertices), n))
+    return Curve(_core.refine(_components(vertices), whole("n", n, 3, MOST)))
 
 
 def search(
@@ -163,7 +169,7 @@ def search(
     seed: int = 0,
     minima: int = 5,
     dl: float = FINE_EDGE,
-    watch: Watch = lambda: None,
+    watch: Watch = unwatched,
 ) -> list[Minimum]:
     """Search for the shortest tight ropes of a knot; return the `minima` shortest, the best one first.
 
@@ -175,6 +181,10 @@ def search(
     >>> best.tight, round(best.length, 3)
     (True, 32.743)
     """
+    trials, minima = whole("trials", trials, 1), whole("minima", minima, 1)
+    jobs, seed = whole("jobs", jobs, 1, 256), whole("seed", seed, 0, 10**6)
+    if not (isinstance(dl, int | float) and LEAST_DL <= dl <= MOST_DL):
+        raise ValueError(f"dl = {dl} is no edge length from {LEAST_DL:g} to {MOST_DL:g} radii")
     source = Source.of(_components(knot), knot if isinstance(knot, str) else None, watch)
     found = Search(seed, max(KEPT, minima))
     with Threads(jobs) as workers:
@@ -215,11 +225,14 @@ class Comparison(Record):
 def compare(rope: Rope, knot: str) -> Comparison:
     """Compare a rope's lengths with the shortest published ropelength of a knot.
 
-    Raises `CurveError` for a curve that is not embedded. The rope's type is taken as said.
+    Raises `CurveError` for a curve that is not embedded, `ValueError` for a name that is not known. The
+    rope's type is taken as said, and what is published goes by the tables' names: 3_1, not T(2,3).
 
     >>> compare(tighten("3_1", 240), "3_1").published
     32.7436
     """
+    if not isinstance(knot, str) or not starts.knows(knot):
+        raise ValueError(f"{knot!r} is no name of a knot")
     measures = measure(_components(rope))
     row = published.extrapolated({"knot": knot, "n": measures.n, "l_a": measures.l_a, "l_c": measures.l_c})
     found = published.beside(row, published.table())
@@ -229,6 +242,8 @@ def compare(rope: Rope, knot: str) -> Comparison:
 
 def _components(vertices: Rope) -> list[Any]:
     """Return the components of whatever stands for a curve."""
-    if isinstance(vertices, Tight | Minimum):
-        vertices = vertices.curve
-    return list(starts.start(vertices)) if isinstance(vertices, str) else as_components(vertices)
+    if not isinstance(vertices, str):
+        return as_components(cast("CurveLike", vertices))
+    if not starts.knows(vertices) and (os.path.exists(vertices) or os.path.splitext(vertices)[1]):
+        raise ValueError(f"{vertices!r} is no name of a knot; sono.read reads a file")
+    return list(starts.start(vertices))

@@ -26,8 +26,8 @@ class Curve(Record, Sequence[Floats]):
     """A closed polygon of one or more components: `components` are arrays (n_i, 3) that cannot be written to.
 
     It is made of an (n, 3) array, or of one such array for each component; a component's last vertex does not
-    repeat its first. Raises `ValueError` for other shapes. A curve can be used like the list of its
-    components.
+    repeat its first. Raises `ValueError` for other shapes, fewer than 3 vertices, and numbers that are not
+    finite. A curve can be used like the list of its components.
 
     >>> curve = Curve([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
     >>> curve
@@ -41,7 +41,13 @@ class Curve(Record, Sequence[Floats]):
     def __init__(self, vertices: "CurveLike") -> None:
         """Copy the vertices."""
         components = tuple(as_components(vertices))
-        for component in components:
+        for c, component in enumerate(components):
+            if len(component) < 3:
+                raise ValueError(
+                    f"component {c} has {len(component)} vertices; a closed curve has 3 at least"
+                )
+            if len(wrong := np.flatnonzero(~np.isfinite(component).all(axis=1))):
+                raise ValueError(f"vertex {wrong[0]} of component {c} is not finite")
             component.setflags(write=False)
         object.__setattr__(self, "components", components)
 
@@ -145,6 +151,7 @@ class Forces(Record):
 
 def as_components(vertices: CurveLike) -> list[Floats]:
     """Return copies of the components, (n_i, 3) each, of what a curve is made of. Raises `ValueError`."""
+    vertices = getattr(vertices, "curve", vertices)  # of what a tightening or a search gave
     if isinstance(vertices, Curve):
         vertices = list(vertices.components)
     try:
@@ -186,6 +193,8 @@ def forces(vertices: CurveLike) -> Forces:
 
 def forces_of(found: tuple[Floats, Floats, NDArray[np.int64], Floats, float], curve: Components) -> Forces:
     """Take over the forces that the core has found in a curve."""
+    for array in found[:4]:
+        array.setflags(write=False)
     return Forces(*found, tuple(map(len, curve)))
 
 

@@ -39,6 +39,9 @@ __all__ = [
 class Format(Protocol):
     """What a format module offers."""
 
+    def recognises(self, text: str) -> bool:
+        """Tell whether a text looks like a file of this format; the first that does is taken."""
+
     def read(self, text: str, name: str) -> VertexFile:
         """Parse a whole file; `name` is for messages."""
 
@@ -47,9 +50,12 @@ class Format(Protocol):
 
 
 FORMATS: dict[str, Format] = {
-    "text": text,
     "vect": vect,
+    "text": text,  # the last one, as it takes any text for its own
 }
+
+PLAIN = "text"
+"""The format whose suffixes say nothing."""
 
 SUFFIXES = {"": "text", ".txt": "text", ".xyz": "text", ".dat": "text", ".vect": "vect"}
 """The format of a file that is written, by its suffix."""
@@ -66,7 +72,8 @@ def read(source: str | os.PathLike[str]) -> VertexFile:
 
 def parse(name: str, content: str) -> VertexFile:
     """Read the text of a curve file, likewise; `name` is for messages, and its suffix counts."""
-    known = "vect" if _suffix(name) == ".vect" or vect.recognises(content) else "text"
+    own = SUFFIXES.get(_suffix(name), PLAIN)
+    known = own if own != PLAIN else next(key for key in FORMATS if FORMATS[key].recognises(content))
     return FORMATS[known].read(content, name)
 
 
@@ -85,7 +92,7 @@ def write(
     name = os.fspath(target)
     format = format or by_suffix(name)
     if format not in FORMATS:
-        raise ValueError(f"unknown format {format!r}; the formats are: {', '.join(FORMATS)}")
+        raise ValueError(f"unknown format {format!r}; the formats are: {', '.join(sorted(FORMATS))}")
     content = FORMATS[format].write(components, comments)
     save(name, content)
 

@@ -52,8 +52,9 @@ class Shape:
 class Minimum(Record):
     """A refined rope, the variant that led there, and the number of trials that did.
 
-    `tight` tells whether the polish reached its end, `residual` is the largest force left over, if that is
-    known, and `met` has the radii of gyration of the coarse shapes that were refined to it.
+    `length` is its L_a, `tight` tells whether the polish reached its end, `residual` is the largest force
+    left over, if that is known, and `met` has the radii of gyration of the coarse shapes that were refined
+    to it.
     """
 
     variant: int
@@ -83,8 +84,8 @@ class Minimum(Record):
         return measure(self.curve)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain values: what the rope measures first, among the other fields."""
-        return self.measures.to_dict() | super().to_dict()
+        """Return plain values: the fields, and what the rope measures; `length` is that of the polygon."""
+        return super().to_dict() | self.measures.to_dict()
 
 
 def rank(minimum: Minimum) -> tuple[bool, float]:

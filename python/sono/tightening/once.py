@@ -3,18 +3,21 @@
 import math
 import time
 from collections.abc import Callable
-from operator import index
 
 from sono.curve import CurveLike, as_components
 from sono.tightening.results import Progress, Stopped, Tight
 from sono.tightening.run import Run
-from sono.tightening.settings import TRIALS, Changes, Method, Settings
+from sono.tightening.settings import TRIALS, Changes, Method, Settings, whole
 
 DEFAULT_N = 480
 
 
 class _Enough(Stopped):
     """The time limit was reached, or who watches has seen enough."""
+
+
+def unseen(progress: Progress) -> None:
+    """Watch nothing."""
 
 
 def tighten(
@@ -27,20 +30,20 @@ def tighten(
     seed: int | None = None,
     time_limit: float | None = None,
     settings: Settings | Changes | None = None,
-    watch: Callable[[Progress], object] = lambda _: None,
+    watch: Callable[[Progress], object] = unseen,
 ) -> Tight:
     """Tighten a curve of any scale to a rope of n vertices, or of edges dl; see `sono.tighten`."""
     settings = settings.changes() if isinstance(settings, Settings) else dict(settings or {})
     if seed is not None:
         if "seed" in settings:
             raise ValueError("the seed is given twice, as an argument and in the settings")
-        settings = settings | {"seed": index(seed)}
+        settings = settings | {"seed": whole("seed", seed)}
     if time_limit is not None and not time_limit >= 0:
         raise ValueError(f"time_limit = {time_limit} is no number of seconds")
     if n is not None and dl is not None:
         raise ValueError("give the number n of vertices or the length dl of edges, not both")
-    target = float(dl) if dl is not None else DEFAULT_N if n is None else index(n)
-    run = Run(as_components(vertices), [target], settings, method, index(trials))
+    target = float(dl) if dl is not None else DEFAULT_N if n is None else whole("n", n)
+    run = Run(as_components(vertices), [target], settings, method, whole("trials", trials))
     end = math.inf if time_limit is None else time.monotonic() + time_limit
 
     def look(progress: Progress) -> None:

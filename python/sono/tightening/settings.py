@@ -5,6 +5,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
+from operator import index
 from typing import Any, Literal
 
 import numpy as np
@@ -128,6 +129,20 @@ def check_settings(changes: Changes) -> None:
     # The core checks the ranges when an engine begins, which on a triangle costs nothing.
     Tightener([np.eye(3)], "settle", 60, json.dumps(of_sono(changes)))
     Polish([np.eye(3)], 60, False, 0, of_polish(changes))
+
+
+def whole(name: str, value: Any, least: int | None = None, most: int | None = None) -> int:
+    """Return a whole number, in a range if there is one. Raises `ValueError`, which names the argument."""
+    try:
+        number = index(value)
+    except TypeError:
+        number = None
+    if number is None or isinstance(value, bool):
+        raise ValueError(f"{name} = {value!r} is no whole number")
+    if (least is not None and number < least) or (most is not None and number > most):
+        ends = f"of {least} at least" if most is None else f"from {least} to {most}"
+        raise ValueError(f"{name} = {number} is no whole number {ends}")
+    return number
 
 
 def _is_number(value: object, most: int | None) -> bool:
