@@ -97,7 +97,7 @@ def test_numbers_from_numpy() -> None:
     with_ints = sono.tighten(sono.start("3_1"), 40, seed=3, settings=QUICK)
     with_numpy = sono.tighten(sono.start("3_1"), np.int64(40), seed=np.uint8(3), settings=QUICK)  # type: ignore[arg-type]
     assert np.array_equal(with_ints.curve, with_numpy.curve)
-    with pytest.raises(TypeError):
+    with pytest.raises(ValueError, match=r"n = 40\.5 is no whole number"):
         sono.tighten(sono.start("3_1"), 40.5)  # type: ignore[arg-type]
 
 

@@ -34,19 +34,15 @@ COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference",
 @options.parallel("Trials made at the same time.")
 @options.checkpoint("Keep the searches here; the next update goes on from them.", "atlas-search")
 @options.table(COLUMNS)
-@options.quiet
 def command(
     sources: tuple[str, ...],
     folder: str,
     update: bool,
     trials: int,
     seed: int,
-    jobs: int,
-    cluster: str | None,
+    pool: options.Pool,
     checkpoint: str,
-    format_: str | None,
-    columns: list[str],
-    quiet: bool,
+    shown: options.Shown,
 ) -> None:
     """Check the atlas, or with --update improve it; a row never gets worse.
 
@@ -62,22 +58,27 @@ def command(
     from sono.jobs.search import spent
 
     atlas = Atlas(Path(folder))
+    _refuse(sources, folder, update)
+    names = sources or [row["knot"] for row in starts.table("knots")]
+    options.tell_of_shadows(names, shown)
+    with pool.workers() as workers:
+        searches = partial(atlas_search, folder=checkpoint, workers=workers, trials=trials, seed=seed)
+        work = [AtlasJob.of(atlas, source, searches if update else None) for source in names]
+        paths = [path for job in work if job.search for path in job.search.files()]
+        paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
+        places.prepare(paths, [], False)
+        code = Batch(shown.table(), shown.quiet).run(work, workers.count)
+    searched = [job.search.checkpoint for job in work if job.search]
+    if searched:
+        shown.tell(spent(searched))
+    sys.exit(code)
+
+
+def _refuse(sources: tuple[str, ...], folder: str, update: bool) -> None:
+    """Refuse what cannot be done."""
     if "-" in sources:
         raise click.UsageError("standard input has no name; give a file NAME.txt")
     if not update and not os.path.exists(os.path.join(folder, "atlas.tsv")):
         raise click.UsageError(f"{folder}/atlas.tsv: no such file; --folder says where, --update makes one")
-    names = sources or [row["knot"] for row in starts.table("knots")]
-    options.tell_of_shadows(names, quiet)
-    with options.workers(jobs, cluster) as workers:
-        searches = partial(atlas_search, folder=checkpoint, workers=workers, trials=trials, seed=seed)
-        work = [AtlasJob.of(atlas, source, searches if update else None) for source in names]
-        if any(job.file for job in work) and not update:
-            raise click.UsageError("give --update to take ropes from files into the atlas")
-        paths = [path for job in work if job.search for path in job.search.files()]
-        paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
-        places.prepare(paths, [], False)
-        code = Batch(options.writer(format_, columns), quiet).run(work, workers.count)
-    searched = [job.search.checkpoint for job in work if job.search]
-    if searched and not quiet:
-        options.complain(spent(searched))
-    sys.exit(code)
+    if not update and any(map(os.path.isfile, sources)):
+        raise click.UsageError("give --update to take ropes from files into the atlas")

@@ -1,11 +1,14 @@
 """`sono compare TABLE...`: our ropelengths beside the published ones."""
 
 import sys
+from collections.abc import Iterator
+from typing import cast
 
 import click
 
 from sono import tables
 from sono.cli import options
+from sono.tables import Row
 
 COLUMNS = (
     *("knot", "n", "l_a", "l_c", "limit", "limit_error", "published", "source"),
@@ -26,10 +29,7 @@ SHOWN = 12
     help="Compare with this table's column published, or else L_a.  [default: ACPR 2011 and KnotInfo]",
 )
 @options.table(COLUMNS)
-@options.quiet
-def command(
-    sources: tuple[str, ...], published_file: str | None, format_: str | None, columns: list[str], quiet: bool
-) -> None:
+def command(sources: tuple[str, ...], published_file: str | None, shown: options.Shown) -> None:
     """Put the published ropelength beside each row of a TABLE, which sono wrote as TSV, CSV or JSON.
 
     A negative difference is ours being shorter. The difference of L_c, a proven bound up to rounding, is that
@@ -43,16 +43,14 @@ def command(
     from sono.formats import FormatError
     from sono.tables import published
 
-    count = {"l_a_difference": 0, "l_c_difference": 0, "limit_difference": 0}
-    coarse: list[str] = []
-    total = unknown = 0
+    compared: list[Row] = []
     failed = False
     try:
         bounds = published.from_file(published_file) if published_file else published.table()
     except FormatError as error:
         options.complain(str(error))
         sys.exit(1)
-    with options.writer(format_, columns) as table:
+    with shown.table() as table:
         for source in sources:
             try:
                 rows = tables.read(source)
@@ -63,23 +61,27 @@ def command(
             for row in rows:
                 beside = published.beside(published.extrapolated(row), bounds)
                 table.row(beside)
-                total += beside["published"] is not None
-                unknown += beside["published"] is None
-                for key in count:
-                    difference = beside.get(key)
-                    count[key] += isinstance(difference, float) and difference <= 0
-                if published.is_too_coarse(beside):
-                    coarse.append(str(row["knot"]))
-                if not quiet and (doubt := published.doubt(beside)):
+                compared.append(beside)
+                if not shown.quiet and (doubt := published.doubt(beside)):
                     options.complain(doubt)
-    if not quiet and total:
-        l_a, l_c, limit = count.values()
+    for line in _summary(compared, [str(row["knot"]) for row in compared if published.is_too_coarse(row)]):
+        shown.tell(line)
+    sys.exit(1 if failed else 0)
+
+
+def _summary(rows: list[Row], coarse: list[str]) -> Iterator[str]:
+    """Count the rows shorter than published, those too coarse to tell, and those of no known name."""
+    known = [row for row in rows if row["published"] is not None]
+    if known:
+        l_a, l_c, limit = (
+            sum(isinstance(row.get(key), float) and cast("float", row[key]) <= 0 for row in rows)
+            for key in ("l_a_difference", "l_c_difference", "limit_difference")
+        )
         shorter = f"L_a is at most the published value in {l_a}, L_c in {l_c}, the limit in {limit}"
-        options.complain(f"of {total} rows {shorter}")
-    if not quiet and coarse:
+        yield f"of {len(known)} rows {shorter}"
+    if coarse:
         names = ", ".join(coarse[:SHOWN]) + (", ..." if len(coarse) > SHOWN else "")
         why = "edges too coarse to tell which is shorter: the error of the limit exceeds the difference"
-        options.complain(f"{len(coarse)} rows have {why}: {names}")
-    if not quiet and unknown:
-        options.complain(f"of {unknown} rows no ropelength is published under the name they have")
-    sys.exit(1 if failed else 0)
+        yield f"{len(coarse)} rows have {why}: {names}"
+    if len(rows) > len(known):
+        yield f"of {len(rows) - len(known)} rows no ropelength is published under the name they have"

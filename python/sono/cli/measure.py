@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+from dataclasses import replace
 from functools import partial
 
 import click
@@ -14,10 +15,7 @@ from sono.cli import options, places
 @options.files
 @click.option("--residual", is_flag=True, help="Add how far the forces in the rope are from balance.")
 @options.table((*tables.DEFAULT, "dispersion", "r_s"))
-@options.quiet
-def command(
-    sources: tuple[str, ...], residual: bool, format_: str | None, columns: list[str], quiet: bool
-) -> None:
+def command(sources: tuple[str, ...], residual: bool, shown: options.Shown) -> None:
     """Measure curves: a row for each FILE, - for standard input.
 
     FILE holds rows of x y z, with # comments and a blank line between the components of a link; or it is a
@@ -28,6 +26,27 @@ def command(
     below 1e-6 for a polished one.
     """
     # Imported here, since numpy would make --help wait.
+    from sono.formats import FormatError
+
+    if residual and "residual" not in shown.columns:
+        shown = replace(shown, columns=[*shown.columns, "residual"])
+    failed = False
+    with shown.table() as table:
+        for source in sources:
+            try:
+                row, doubts = _measured(source, "residual" in shown.columns)
+            except FormatError as error:
+                failed = True
+                options.complain(str(error))
+                continue
+            for doubt in doubts:
+                shown.tell(doubt)
+            table.row(row)
+    sys.exit(1 if failed else 0)
+
+
+def _measured(source: str, residual: bool) -> tuple[tables.Row, list[str]]:
+    """Return the row of a file, and what is doubtful about it. Raises `FormatError`."""
     from sono import starts
     from sono.curve import forces
     from sono.formats import FormatError
@@ -36,28 +55,12 @@ def command(
     from sono.jobs.sources import is_name
     from sono.patience import patiently
 
-    if residual and "residual" not in columns:
-        columns = [*columns, "residual"]
-    failed = False
-    with options.writer(format_, columns) as table:
-        for source in sources:
-            try:
-                if is_name(source) and starts.knows(source):
-                    start = f"`sono start {shlex.quote(source)} | sono measure -`"
-                    cure = f"measure takes files; {start} measures a loose start"
-                    raise FormatError(f"{source}: no such file; {cure}")
-                curve, measures = measured(source)
-            except FormatError as error:
-                failed = True
-                options.complain(str(error))
-                continue
-            doubts = curve.doubts()
-            if measures.l_c is None:
-                doubts.append(f"{curve.name}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
-            for doubt in doubts if not quiet else []:
-                options.complain(doubt)
-            more = {}
-            if "residual" in columns:
-                more["residual"] = patiently(partial(forces, curve.components)).residual
-            table.row(as_row(places.knot_name(source), curve.name, measures, **more))
-    sys.exit(1 if failed else 0)
+    if is_name(source) and starts.knows(source):
+        start = f"`sono start {shlex.quote(source)} | sono measure -`"
+        raise FormatError(f"{source}: no such file; measure takes files; {start} measures a loose start")
+    curve, measures = measured(source)
+    doubts = curve.doubts()
+    if measures.l_c is None:
+        doubts.append(f"{curve.name}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
+    more = {"residual": patiently(partial(forces, curve.components)).residual} if residual else {}
+    return as_row(places.knot_name(source), curve.name, measures, **more), doubts

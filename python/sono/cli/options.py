@@ -6,6 +6,7 @@ import math
 import re
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
@@ -76,62 +77,100 @@ def _listed(path: str) -> list[str]:
         raise click.UsageError(f"{path}: cannot be read: {error.strerror}") from error
 
 
-def tell_of_shadows(sources: Sequence[str], quiet: bool) -> None:
+def tell_of_shadows(sources: Sequence[str], shown: "Shown") -> None:
     """Say which sources are files called like a knot."""
     from sono.jobs.sources import shadowed  # here, since numpy would make --help wait
 
-    for source in sources if not quiet else []:
-        if shadowed(source):
-            why = "is a file here, which is taken, and not the knot of this name"
-            complain(f"{source}: {why}; `sono start {source}` draws that")
+    for source in filter(shadowed, sources):
+        why = "is a file here, which is taken, and not the knot of this name"
+        shown.tell(f"{source}: {why}; `sono start {source}` draws that")
+
+
+@dataclass(frozen=True)
+class Pool:
+    """Who does the work: so many threads, or the cluster at this address."""
+
+    jobs: int
+    cluster: str | None
+
+    def workers(self) -> "Threads | Cluster":
+        """Make them ready. Raises `click.UsageError` if the cluster does not answer."""
+        from sono.jobs.workers import Cluster, Threads
+
+        if not self.cluster:
+            return Threads(self.jobs)
+        try:
+            return Cluster(self.cluster)
+        except ValueError as error:
+            raise click.UsageError(str(error)) from error
 
 
 def parallel(jobs_help: str) -> Callable[[Function], Function]:
-    """`--jobs` and `--cluster`."""
+    """`--jobs` and `--cluster`, as a `pool`."""
 
     def decorate(function: Function) -> Function:
-        function = click.option(
+        @click.option(
+            "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, show_default=True, help=jobs_help
+        )
+        @click.option(
             "--cluster",
             metavar="ADDRESS",
             help="Have a Dask scheduler's workers do it, tcp://host:8786 say; needs the extra sono[cluster].",
-        )(function)
-        return click.option(
-            "-j", "--jobs", type=click.IntRange(1, MOST_JOBS), default=1, show_default=True, help=jobs_help
-        )(function)
+        )
+        @functools.wraps(function)
+        def command(jobs: int, cluster: str | None, **more: object) -> object:
+            return function(pool=Pool(jobs, cluster), **more)
+
+        return cast("Function", command)
 
     return decorate
 
 
-def workers(jobs: int, cluster: str | None) -> "Threads | Cluster":
-    """Threads, or the cluster at this address."""
-    from sono.jobs.workers import Cluster, Threads
+@dataclass(frozen=True)
+class Shown:
+    """How results are shown: the table's format and columns, and whether that is all."""
 
-    if not cluster:
-        return Threads(jobs)
-    try:
-        return Cluster(cluster)
-    except ValueError as error:
-        raise click.UsageError(str(error)) from error
+    format: str | None
+    columns: list[str]
+    quiet: bool
+
+    def table(self, taken: bool = False) -> TableWriter:
+        """Return the table on standard output, unless that is `taken` by vertices or contacts."""
+        stream: TextIO = sys.stdout
+        if taken:
+            stream = io.StringIO() if self.quiet else sys.stderr
+        return tables.writer(self.format or ("table" if stream.isatty() else "tsv"), self.columns, stream)
+
+    def tell(self, message: str) -> None:
+        """Write what a quiet user does not want to hear."""
+        if not self.quiet:
+            complain(message)
 
 
 def table(default: Sequence[str]) -> Callable[[Function], Function]:
-    """`--format` and `--columns`, these columns being the default."""
+    """`--format`, `--columns`, these columns being the default, and `--quiet`: as how results are `shown`."""
 
     def decorate(function: Function) -> Function:
-        function = click.option(
-            "--format",
-            "format_",
-            type=click.Choice(list(tables.FORMATS)),
-            help="Format of the table.  [default: table on a terminal, tsv elsewhere]",
-        )(function)
-        return click.option(
+        @click.option(
             "--columns",
             default=",".join(default),
             show_default=True,
             callback=_columns,
             metavar="KEY,...",
             help=f"Columns of the table, l_p or L_p, of: {', '.join(tables.COLUMNS)}.",
-        )(function)
+        )
+        @click.option(
+            "--format",
+            "format_",
+            type=click.Choice(list(tables.FORMATS)),
+            help="Format of the table.  [default: table on a terminal, tsv elsewhere]",
+        )
+        @click.option("-q", "--quiet", is_flag=True, help="No progress and no messages but errors.")
+        @functools.wraps(function)
+        def command(format_: str | None, columns: list[str], quiet: bool, **more: object) -> object:
+            return function(shown=Shown(format_, columns, quiet), **more)
+
+        return cast("Function", command)
 
     return decorate
 
@@ -188,13 +227,6 @@ def other_starts(function: Function) -> Function:
     )(function)
 
 
-def quiet(function: Function) -> Function:
-    """`--quiet`."""
-    return click.option("-q", "--quiet", is_flag=True, help="No progress and no messages but errors.")(
-        function
-    )
-
-
 def _columns(ctx: click.Context, param: click.Parameter, value: str) -> list[str]:
     try:
         keys = [tables.key_of(name) for name in value.split(",") if name.strip()]
@@ -203,16 +235,3 @@ def _columns(ctx: click.Context, param: click.Parameter, value: str) -> list[str
     if not keys:
         raise click.BadParameter("name at least one column")
     return keys
-
-
-def writer(format_: str | None, columns: Sequence[str], stream: TextIO | None = None) -> TableWriter:
-    """The table on a stream, by default on standard output."""
-    stream = stream or sys.stdout
-    return tables.writer(format_ or ("table" if stream.isatty() else "tsv"), columns, stream)
-
-
-def table_beside(format_: str | None, columns: list[str], taken: bool, quiet: bool) -> TableWriter:
-    """The table, which leaves standard output to vertices or contacts if they go there."""
-    if not taken:
-        return writer(format_, columns)
-    return writer(format_, columns, io.StringIO() if quiet else sys.stderr)

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -45,7 +46,6 @@ COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
 @options.checkpoint("Keep the state of each search here.")
 @options.resume("finished")
 @options.table(COLUMNS)
-@options.quiet
 def command(
     sources: list[str],
     trials: int | None,
@@ -55,13 +55,10 @@ def command(
     output: str | None,
     force: bool,
     seed: int,
-    jobs: int,
-    cluster: str | None,
+    pool: options.Pool,
     checkpoint: str | None,
     resume: bool,
-    format_: str | None,
-    columns: list[str],
-    quiet: bool,
+    shown: options.Shown,
 ) -> None:
     """Search for the shortest tight rope of each knot, a NAME such as 8_20 or a FILE.
 
@@ -75,27 +72,24 @@ def command(
     if force and resume:
         raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")
     trials = trials or (None if time_limit else 64)
-    with options.workers(jobs, cluster) as workers:
+    with pool.workers() as workers:
+        same: dict[str, Any] = {"time_limit": time_limit, "seed": seed, "dl": dl, "minima": minima}
         work = [
             SearchJob(
-                source,
-                name,
-                path,
-                workers,
-                trials=trials,
-                time_limit=time_limit,
-                seed=seed,
-                dl=dl,
-                minima=minima,
-                checkpoint=Path(checkpoint, f"{name}.search.json") if checkpoint else None,
+                *(source, name, path, workers, trials),
+                checkpoint=_checkpoint(checkpoint, name),
                 resume=resume,
+                **same,
             )
             for source, name, path in _plan(sources, output)
         ]
         places.prepare([path for job in work for path in job.files()], sources, not (force or resume))
-        options.tell_of_shadows(sources, quiet)
-        table = options.table_beside(format_, columns, output == "-", quiet)
-        sys.exit(Batch(table, quiet).run(work, workers.count))
+        options.tell_of_shadows(sources, shown)
+        sys.exit(Batch(shown.table(output == "-"), shown.quiet).run(work, workers.count))
+
+
+def _checkpoint(folder: str | None, name: str) -> Path | None:
+    return Path(folder, f"{name}.search.json") if folder else None
 
 
 def _plan(sources: list[str], output: str | None) -> Iterator[tuple[str, str, str]]:

@@ -2,8 +2,12 @@
 
 import os
 import sys
+from typing import TYPE_CHECKING
 
 import click
+
+if TYPE_CHECKING:
+    from sono.curve import Components
 
 
 @click.command("start")
@@ -45,8 +49,6 @@ def command(
     # Imported here, since numpy would make --help wait.
     from sono import formats, starts
     from sono.cli import options, places
-    from sono.starts.braids import braid
-    from sono.starts.scramble import scramble
 
     if list_names:
         if name or word or output != "-":
@@ -61,18 +63,7 @@ def command(
     if output != "-" and os.path.exists(output) and not force:
         raise click.UsageError(f"{output} exists; --force overwrites it")
     try:
-        if word is not None:
-            title = f"closed braid {word}"
-            curve = braid(_generators(word))
-            curve = scramble(curve, variant) if variant else curve
-        else:
-            assert name is not None
-            title = name
-            curve = starts.start(name, variant)
-        title += f", variant {variant}" if variant else ""
-        if scramble_seed is not None:
-            title += f", scrambled with seed {scramble_seed}"
-            curve = scramble(curve, scramble_seed)
+        title, curve = _drawn(name, word, variant, scramble_seed)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
     try:
@@ -80,6 +71,28 @@ def command(
     except formats.FormatError as error:
         options.complain(str(error))
         sys.exit(1)
+
+
+def _drawn(
+    name: str | None, word: str | None, variant: int, scramble_seed: int | None
+) -> "tuple[str, Components]":
+    """Draw what was asked for, and say what it is. Raises `ValueError`."""
+    from sono import starts
+    from sono.starts.braids import braid
+    from sono.starts.scramble import scramble
+
+    if word is not None:
+        title = f"closed braid {word}"
+        curve = braid(_generators(word))
+        curve = scramble(curve, variant) if variant else curve
+    else:
+        title = name or ""
+        curve = starts.start(title, variant)
+    title += f", variant {variant}" if variant else ""
+    if scramble_seed is not None:
+        title += f", scrambled with seed {scramble_seed}"
+        curve = scramble(curve, scramble_seed)
+    return title, curve
 
 
 def _generators(word: str) -> list[int]:

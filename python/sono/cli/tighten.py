@@ -106,7 +106,6 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
 @options.checkpoint("Keep the state of each run here.")
 @options.resume("there")
 @options.table((*tables.DEFAULT, "status"))
-@options.quiet
 def command(
     sources: list[str],
     numbers: "list[Target]",
@@ -119,13 +118,10 @@ def command(
     seed: int,
     time_limit: float | None,
     pairs: tuple[str, ...],
-    jobs: int,
-    cluster: str | None,
+    pool: options.Pool,
     checkpoint: str | None,
     resume: bool,
-    format_: str | None,
-    columns: list[str],
-    quiet: bool,
+    shown: options.Shown,
 ) -> None:
     """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N or DL.
 
@@ -138,41 +134,39 @@ def command(
     from sono.jobs.curvefiles import free_name
     from sono.jobs.tighten import Job
 
-    settings = _settings(seed, pairs)
-    if numbers and lengths:
-        raise click.UsageError("-n counts vertices, --dl says how long edges are; give one of them")
-    targets = numbers or lengths or [480]
-    if force and resume:
-        raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")
-    if cluster and checkpoint:
-        raise click.UsageError("a checkpoint is of no use on a cluster; --resume keeps what is finished")
     fresh = not (force or resume)
-    if contacts and method == "sono":
-        raise click.UsageError("--contacts needs the polish; use the method both or polish")
-    if output == contacts == "-":
-        raise click.UsageError("standard output cannot hold both vertices and contacts; name a file for one")
+    _refuse(
+        {
+            "-n counts vertices, --dl says how long edges are; give one of them": numbers and lengths,
+            "--force starts anew, --resume keeps what is there; give one of them": force and resume,
+            "a checkpoint is of no use on a cluster; --resume keeps what is finished": pool.cluster
+            and checkpoint,
+            "--contacts needs the polish; use the method both or polish": contacts and method == "sono",
+            "standard output cannot hold both vertices and contacts; name a file for one": output == "-"
+            and contacts == "-",
+        }
+    )
+    asked = _plan(sources, numbers or lengths or [480], output, fresh)
+    same: dict[str, Any] = {"settings": _settings(seed, pairs), "method": method, "trials": trials}
+    same |= {"time_limit": time_limit, "resume": resume}
     work = [
-        Job(
-            source,
-            name,
-            outputs,
-            settings,
-            method=method,
-            trials=trials,
-            forces=_forces(contacts, outputs, name, len(sources)),
-            time_limit=time_limit,
-            checkpoint=_checkpoint(checkpoint, name),
-            resume=resume,
-        )
-        for source, name, outputs in _plan(sources, targets, output, fresh)
+        Job(source, name, outputs, **_beside(name, outputs, contacts, checkpoint, len(sources)), **same)
+        for source, name, outputs in asked
     ]
     unfinished = (free_name(path) for job in work for path in job.outputs.values() if path != "-")
     places.prepare([path for job in work for path in job.files()], sources, fresh, unfinished)
-    options.tell_of_shadows(sources, quiet)
-    table = options.table_beside(format_, columns, "-" in (output, contacts), quiet)
-    with options.workers(jobs, cluster) as workers:
-        sent = [SentJob(job, workers) for job in work] if cluster else work
-        sys.exit(Batch(table, quiet).run(sent, workers.count))
+    options.tell_of_shadows(sources, shown)
+    table = shown.table("-" in (output, contacts))
+    with pool.workers() as workers:
+        sent = [SentJob(job, workers) for job in work] if pool.cluster else work
+        sys.exit(Batch(table, shown.quiet).run(sent, workers.count))
+
+
+def _refuse(contradictions: dict[str, object]) -> None:
+    """Refuse options that contradict each other."""
+    for why, there in contradictions.items():
+        if there:
+            raise click.UsageError(why)
 
 
 def _plan(
@@ -231,8 +225,12 @@ def _forces(path: str | None, outputs: "dict[Target, str]", name: str, sources: 
     return dict.fromkeys(outputs, path)
 
 
-def _checkpoint(folder: str | None, name: str) -> Path | None:
-    return Path(folder, f"{name}.checkpoint.json") if folder else None
+def _beside(
+    name: str, outputs: "dict[Target, str]", contacts: str | None, checkpoint: str | None, sources: int
+) -> dict[str, Any]:
+    """Say what a job writes beside its outputs."""
+    kept = Path(checkpoint, f"{name}.checkpoint.json") if checkpoint else None
+    return {"forces": _forces(contacts, outputs, name, sources), "checkpoint": kept}
 
 
 def _settings(seed: int, pairs: tuple[str, ...]) -> dict[str, Any]:

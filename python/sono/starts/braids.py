@@ -5,7 +5,7 @@
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,18 +44,24 @@ def braid(word: Sequence[int]) -> Components:
             [rho * np.cos(angle), rho * np.sin(angle), lift[sector, position] * np.sin(half_turn)]
         )
 
-    curve = []
+    return [
+        np.vstack([piece(sector, position) for sector, position in circuit]) for circuit in _circuits(target)
+    ]
+
+
+def _circuits(target: NDArray[np.int_]) -> Iterator[list[tuple[int, int]]]:
+    """Follow each component once: give its sectors, and the position at which it enters each."""
+    sectors, strands = target.shape
     unseen = set(range(strands))
     while unseen:
         first = position = min(unseen)
-        pieces: list[NDArray[np.float64]] = []
-        while not pieces or position != first:
+        circuit: list[tuple[int, int]] = []
+        while not circuit or position != first:
             unseen.remove(position)
             for sector in range(sectors):
-                pieces.append(piece(sector, position))
+                circuit.append((sector, position))
                 position = int(target[sector, position])
-        curve.append(np.vstack(pieces))
-    return curve
+        yield circuit
 
 
 def _sectors(word: Sequence[int], strands: int) -> tuple[NDArray[np.int_], NDArray[np.float64]]:
