@@ -53,6 +53,12 @@ def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[st
 
     Coordinates keep every digit, and the file appears whole or not at all; the `comments` come first. Raises
     `FormatError` where it cannot be written.
+
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "hopf.vect")
+    >>> write(path, "Hopf", "a Hopf link")
+    >>> path.read_text().splitlines()[:3]
+    ['VECT', '# a Hopf link', '2 96 0']
     """
     formats.write(path, Curve(_components(curve)), [comments] if isinstance(comments, str) else comments)
 
@@ -208,6 +214,10 @@ class Comparison(Record):
 
     Differences are ours less the published; `limit`, with its error, estimates L_a on ever finer edges. What
     is not known is None.
+
+    >>> found = compare(tighten("4_1", 210), "4_1")
+    >>> found.source, abs(found.limit_difference) < 0.05
+    ('ACPR 2011', True)
     """
 
     knot: str

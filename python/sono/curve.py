@@ -102,6 +102,11 @@ class Measures(Record):
     inscribed_length/r_c, which bounds that of the smooth knot, and the weighted `l_a` = (4 l_p + l_c)/5.
 
     Source: J. Baranska, P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots", section 2.
+
+    >>> import sono
+    >>> m = sono.tighten("3_1", 120).measures
+    >>> m.n, round(m.r_s, 9), m.l_p < m.l_a < m.l_c
+    (120, 1.0, True)
     """
 
     n: int
@@ -132,6 +137,11 @@ class Forces(Record):
     bending beyond the radius. The beads `contacts` (m, 2), counted through all components, press against each
     other with the forces `pressing` (m,). `sizes` are the numbers of beads of the components. `residual` is
     the largest coordinate of a force that is left over on a bead.
+
+    >>> import sono
+    >>> forces = sono.tighten("Hopf", 60).forces
+    >>> len(forces.tension), forces.contacts.shape == forces.places.shape[:2], forces.residual < 1e-8
+    (60, True, True)
     """
 
     tension: Floats

@@ -55,6 +55,11 @@ class Minimum(Record):
     `length` is its L_a, `tight` tells whether the polish reached its end, `residual` is the largest force
     left over, if that is known, and `met` has the radii of gyration of the coarse shapes that were refined
     to it.
+
+    >>> import sono
+    >>> best = sono.search("3_1", trials=1)[0]
+    >>> best.tight, best.hits, best.length == best.measures.l_a
+    (True, 1, True)
     """
 
     variant: int

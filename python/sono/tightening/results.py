@@ -33,6 +33,11 @@ class Tight(Record):
     constraint's multiplier and slack, and `excess`, the sum of these products, tells by how much at most a
     converged rope is longer than the local minimum. Otherwise these are None. No forces are fitted to a rope
     that was stopped.
+
+    >>> import sono
+    >>> tight = sono.tighten("4_1", 105)
+    >>> tight.converged, tight.residual < 1e-8, len(tight.forces.tension), tight.to_dict()["n"]
+    (True, True, 105, 105)
     """
 
     curve: Curve
