@@ -7,7 +7,7 @@ a bug of the core `PanicError`.
 """
 
 from collections.abc import Sequence
-from typing import Literal, TypeAlias, TypedDict, final
+from typing import Any, Literal, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,9 @@ Tension of the edge after each bead (n,), couple of each bead (n,), beads in con
 force each pair presses (k,), and the largest coordinate of what is left over on a bead.
 """
 
+_Measures: TypeAlias = dict[str, Any]
+"""What a curve measures, in its own unit: the fields of `sono.curve.Measures`, which says what they are."""
+
 class CurveError(ValueError):
     """A curve that cannot be used, and the places: (component, vertex), vertex None for a whole component.
 
@@ -53,37 +56,6 @@ class CurveError(ValueError):
 
 class PanicError(RuntimeError):
     """The core came upon a bug of its own. What it worked on is lost, and nothing else."""
-
-class _Measures(TypedDict):
-    """What a curve measures, in its own unit; the type has no class at run time.
-
-    Baranska, Pieranski, Rawdon, "Ropelength of tight polygonal knots", section 2.
-    """
-
-    n: int
-    """Vertices."""
-    components: int
-    dl: float
-    """Mean edge length."""
-    dispersion: float
-    """Largest |s_i/dl - 1|, dl being the mean edge of the component."""
-    min_rad: float
-    """Least radius of the inscribed arcs, MinRad."""
-    sr: float
-    """Half the least distance of vertices that are no neighbours along the curve, SR; inf without any."""
-    r_s: float
-    """Sphere thickness radius, the smaller of what MinRad and SR allow."""
-    r_c: float | None
-    """Radius of the smooth tube around the inscribed knot, None where R_s <= dl/sqrt 2."""
-    length: float
-    inscribed_length: float
-    """Length of the inscribed knot K_P."""
-    l_p: float
-    """Raw polygonal ropelength, length/R_s."""
-    l_c: float | None
-    """Inscribed ropelength, a bound: the length of K_P over R_c."""
-    l_a: float | None
-    """Weighted ropelength (4 L_p + L_c)/5, an estimate."""
 
 class _Status(TypedDict):
     """Where SONO stands; the type has no class at run time."""

@@ -7,13 +7,14 @@ vertices, ropelengths are lengths over the RADIUS of the rope.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeAlias, cast
 
-from sono import _core, curve, formats, starts, tightening
+from sono import _core, curve, formats, starts
 from sono.curve import Curve as Curve
 from sono.curve import CurveLike, Forces, Measures, as_components
 from sono.jobs.workers import Threads
@@ -22,15 +23,21 @@ from sono.searching.minima import Minimum, merged
 from sono.searching.search import KEPT, Search
 from sono.searching.trials import FINE_EDGE, Source, Watch, finish, unwatched
 from sono.tables import published
-from sono.tightening import Method, Progress, Tight
-from sono.tightening.once import unseen
+from sono.tightening import Method, Progress, Run, Tight
+from sono.tightening.once import best_of, changed
 from sono.tightening.settings import LEAST_DL, MOST, MOST_DL, TRIALS, Changes, Settings, whole
+
+DEFAULT_N = 480
 
 AnyCurve: TypeAlias = "CurveLike | str"
 """A curve, or the name of a knot."""
 
 Rope: TypeAlias = "AnyCurve | Tight | Minimum"
 """A curve, or what a tightening or a search gave."""
+
+
+def unseen(progress: Progress) -> None:
+    """Watch nothing."""
 
 
 def read(path: str | os.PathLike[str]) -> Curve:
@@ -136,23 +143,17 @@ def tighten(
     Raises `CurveError` for a curve that cannot be tightened (with so few vertices), `ValueError` for a wrong
     n, dl, method or setting. A rope of another knot type than the curve is never returned: `KnotTypeError`.
 
-    >>> tight = tighten("3_1", 60)
-    >>> tight.converged, round(tight.measures.l_a, 3)
-    (True, 32.719)
-    >>> round(tighten("3_1", dl=0.2).measures.dl, 2)
-    0.2
+    >>> round(tighten("3_1", 60).measures.l_a, 3), round(tighten("3_1", dl=0.2).measures.dl, 2)
+    (32.719, 0.2)
     """
-    return tightening.tighten(
-        _components(vertices),
-        n,
-        dl=dl,
-        method=method,
-        trials=trials,
-        seed=seed,
-        time_limit=time_limit,
-        settings=settings,
-        watch=watch,
-    )
+    if time_limit is not None and not time_limit >= 0:
+        raise ValueError(f"time_limit = {time_limit} is no number of seconds")
+    if n is not None and dl is not None:
+        raise ValueError("give the number n of vertices or the length dl of edges, not both")
+    target = float(dl) if dl is not None else whole("n", DEFAULT_N if n is None else n)
+    curve, changes = _components(vertices), changed(settings, seed)
+    run = Run(curve, [target], changes, method, whole("trials", trials))
+    return best_of(run, math.inf if time_limit is None else time_limit, watch)
 
 
 def refine(vertices: Rope, n: int) -> Curve:

@@ -35,6 +35,13 @@ def check_suffix(path: str) -> None:
         raise click.UsageError(str(error)) from error
 
 
+def fresh(force: bool, resume: bool) -> bool:
+    """Tell whether nothing is to be written over or gone on with."""
+    if force and resume:
+        raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")
+    return not (force or resume)
+
+
 def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool, more: Iterable[str] = ()) -> None:
     """Before hours are spent: see that these files can be written, by nobody else, and read standard input.
 

@@ -69,8 +69,7 @@ def command(
     # Imported here, since numpy would make --help wait.
     from sono.jobs.search import SearchJob
 
-    if force and resume:
-        raise click.UsageError("--force starts anew, --resume keeps what is there; give one of them")
+    fresh = places.fresh(force, resume)
     trials = trials or (None if time_limit else 64)
     with pool.workers() as workers:
         same: dict[str, Any] = {"time_limit": time_limit, "seed": seed, "dl": dl, "minima": minima}
@@ -83,7 +82,7 @@ def command(
             )
             for source, name, path in _plan(sources, output)
         ]
-        places.prepare([path for job in work for path in job.files()], sources, not (force or resume))
+        places.prepare([path for job in work for path in job.files()], sources, fresh)
         options.tell_of_shadows(sources, shown)
         sys.exit(Batch(shown.table(output == "-"), shown.quiet).run(work, workers.count))
 

@@ -15,6 +15,7 @@ from sono.cli.runner import Batch
 from sono.jobs.locks import Taken
 
 if TYPE_CHECKING:
+    from sono.jobs.tighten import Job
     from sono.tightening import Method
     from sono.tightening.targets import Target
 
@@ -110,6 +111,34 @@ def command(
     sources: list[str],
     numbers: "list[Target]",
     lengths: "list[Target]",
+    pool: options.Pool,
+    shown: options.Shown,
+    **asked: Any,
+) -> None:
+    """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N or DL.
+
+    The rope has radius 1. L_p, L_c and L_a are what the written vertices measure. Where a run is stopped by
+    Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt, unless it is on a cluster.
+    Standard input has the NAME stdin, or else stdin-2 and so on.
+    """
+    from sono.jobs.away import SentJob  # here, since numpy would make --help wait
+
+    if numbers and lengths:
+        raise click.UsageError("-n counts vertices, --dl says how long edges are; give one of them")
+    if pool.cluster and asked["checkpoint"]:
+        raise click.UsageError("a checkpoint is of no use on a cluster; --resume keeps what is finished")
+    work = _work(sources, numbers or lengths or [480], **asked)
+    options.tell_of_shadows(sources, shown)
+    table = shown.table("-" in (asked["output"], asked["contacts"]))
+    with pool.workers() as workers:
+        sent = [SentJob(job, workers) for job in work] if pool.cluster else work
+        sys.exit(Batch(table, shown.quiet).run(sent, workers.count))
+
+
+def _work(
+    sources: list[str],
+    targets: "list[Target]",
+    *,
     method: "Method",
     trials: int,
     output: str | None,
@@ -118,55 +147,27 @@ def command(
     seed: int,
     time_limit: float | None,
     pairs: tuple[str, ...],
-    pool: options.Pool,
     checkpoint: str | None,
     resume: bool,
-    shown: options.Shown,
-) -> None:
-    """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N or DL.
-
-    The rope has radius 1. L_p, L_c and L_a are what the written vertices measure. Where a run is stopped by
-    Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt, unless it is on a cluster.
-    Standard input has the NAME stdin, or else stdin-2 and so on.
-    """
-    # Imported here, since numpy would make --help wait.
-    from sono.jobs.away import SentJob
+) -> "list[Job]":
+    """Make a job of each source, and its places ready."""
     from sono.jobs.curvefiles import free_name
     from sono.jobs.tighten import Job
 
-    fresh = not (force or resume)
-    _refuse(
-        {
-            "-n counts vertices, --dl says how long edges are; give one of them": numbers and lengths,
-            "--force starts anew, --resume keeps what is there; give one of them": force and resume,
-            "a checkpoint is of no use on a cluster; --resume keeps what is finished": pool.cluster
-            and checkpoint,
-            "--contacts needs the polish; use the method both or polish": contacts and method == "sono",
-            "standard output cannot hold both vertices and contacts; name a file for one": output == "-"
-            and contacts == "-",
-        }
-    )
-    asked = _plan(sources, numbers or lengths or [480], output, fresh)
+    fresh = places.fresh(force, resume)
+    if contacts and method == "sono":
+        raise click.UsageError("--contacts needs the polish; use the method both or polish")
+    if output == contacts == "-":
+        raise click.UsageError("standard output cannot hold both vertices and contacts; name a file for one")
     same: dict[str, Any] = {"settings": _settings(seed, pairs), "method": method, "trials": trials}
     same |= {"time_limit": time_limit, "resume": resume}
     work = [
         Job(source, name, outputs, **_beside(name, outputs, contacts, checkpoint, len(sources)), **same)
-        for source, name, outputs in asked
+        for source, name, outputs in _plan(sources, targets, output, fresh)
     ]
     unfinished = (free_name(path) for job in work for path in job.outputs.values() if path != "-")
     places.prepare([path for job in work for path in job.files()], sources, fresh, unfinished)
-    options.tell_of_shadows(sources, shown)
-    table = shown.table("-" in (output, contacts))
-    with pool.workers() as workers:
-        sent = [SentJob(job, workers) for job in work] if pool.cluster else work
-        sys.exit(Batch(table, shown.quiet).run(sent, workers.count))
-
-
-def _refuse(contradictions: dict[str, object]) -> None:
-    """Refuse options that contradict each other."""
-    for why, there in contradictions.items():
-        if there:
-            raise click.UsageError(why)
+    return work
 
 
 def _plan(

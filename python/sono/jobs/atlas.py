@@ -25,7 +25,7 @@ from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured
 from sono.searching.minima import same_edges
 from sono.searching.trials import FINE_EDGE, Watch, unwatched
 from sono.tables import Row, Value, published
-from sono.tightening import Tight, tighten
+from sono.tightening import Tight, polished
 
 FINEST_EDGE = 0.03
 """Edge length at which L_c is given once more, in radii."""
@@ -168,7 +168,7 @@ class Atlas:
 def _polished(curve: Components, edge: float, watch: Watch) -> Tight:
     """Polish a rope on edges of this length."""
     n = round(measure(curve).l_p / edge)
-    return tighten(curve, n, method="polish", watch=lambda _: watch())
+    return polished(curve, n, watch)
 
 
 def _centred(curve: Components) -> Components:

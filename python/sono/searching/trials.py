@@ -16,7 +16,7 @@ from sono.curve import Components
 from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.searching.minima import Minimum, Shape, has_edges, radii_of_gyration, rank
 from sono.starts.scramble import scramble
-from sono.tightening import tighten
+from sono.tightening import polished
 from sono.tightening.engines import done, status_of
 from sono.tightening.trial import HOT, Recipe, Trial
 
@@ -122,7 +122,7 @@ def refine(shape: Shape, watch: Watch = unwatched) -> Minimum | None:
 def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None:
     """Polish a minimum on n vertices, doubling the vertices on the way there; None if that fails."""
     try:
-        tight = tighten(minimum.curve, n, method="polish", watch=lambda _: watch())
+        tight = polished(minimum.curve, n, watch)
     except FAILURES:
         return None
     assert tight.residual is not None

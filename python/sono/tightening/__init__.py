@@ -3,9 +3,9 @@
 May import `curve`, `invariants`, `patience` and `records`.
 """
 
-from sono.tightening.once import tighten
+from sono.tightening.once import polished
 from sono.tightening.results import KnotTypeError, Progress, Stopped, Tight
 from sono.tightening.run import Run
 from sono.tightening.settings import Method, Settings
 
-__all__ = ["KnotTypeError", "Method", "Progress", "Run", "Settings", "Stopped", "Tight", "tighten"]
+__all__ = ["KnotTypeError", "Method", "Progress", "Run", "Settings", "Stopped", "Tight", "polished"]
