@@ -1,8 +1,9 @@
 """Every conformation that has a name: knots of the tables, torus types, chains, braids, and their variants.
 
-May import `curve`.
+May import `curve` and `invariants`.
 """
 
-from sono.starts.names import has_variants, knows, names, start, table
+from sono.starts.names import has_variants, knows, names, start
+from sono.starts.tables import table
 
 __all__ = ["has_variants", "knows", "names", "start", "table"]

@@ -11,20 +11,20 @@ right-handed crossing, so 3_1 is the right-handed trefoil.
 (1, 1, 1, 3)
 """
 
-import csv
 import difflib
 import json
 import re
 from functools import cache
-from importlib import resources
 
 from sono.curve import Components
 from sono.starts.arcs import Strokes, grid, shuffled
 from sono.starts.braids import braid
 from sono.starts.drawing import mirror
 from sono.starts.flypes import flyped
+from sono.starts.links import link_names, link_row, oriented_like
 from sono.starts.planar import Diagram, lifted
 from sono.starts.scramble import scramble
+from sono.starts.tables import table
 from sono.starts.torus import chain, torus
 
 # Those that are drawn best in another way than as the braids of the data file.
@@ -52,13 +52,6 @@ _BRAID = re.compile(r"-?\d{1,999}([\s,]+-?\d{1,999})+")
 _KNOTINFO = re.compile(r"1[123][an]_\d+")
 
 
-def table(name: str) -> list[dict[str, str]]:
-    """Return the rows of a table that is shipped with the package, "knots" or "published"."""
-    text = resources.files("sono").joinpath("data", f"{name}.tsv").read_text(encoding="utf-8")
-    lines = [line for line in text.splitlines() if not line.startswith("#")]
-    return list(csv.DictReader(lines, delimiter="\t"))
-
-
 @cache
 def _knots() -> dict[str, dict[str, str]]:
     return {row["knot"]: row for row in table("knots")}
@@ -66,7 +59,7 @@ def _knots() -> dict[str, dict[str, str]]:
 
 def names() -> list[str]:
     """Return the names that are built in, besides torus types such as "T(2,5)" and braid words."""
-    return [*dict.fromkeys([*_knots(), *_DRAWN])]
+    return [*dict.fromkeys([*_knots(), *_DRAWN, *link_names()])]
 
 
 def has_variants(name: str) -> bool:
@@ -79,7 +72,8 @@ def knows(name: str) -> bool:
     """Tell whether this looks like the name of a knot, without drawing it."""
     plain = re.sub("^m", "", name.strip(), flags=re.IGNORECASE)
     patterns = (_TORUS, _CHAIN, _BRAID, _KNOTINFO)
-    return plain.casefold() in map(str.casefold, names()) or any(p.fullmatch(plain) for p in patterns)
+    known = plain.casefold() in map(str.casefold, names()) or link_row(plain) is not None
+    return known or any(p.fullmatch(plain) for p in patterns)
 
 
 def start(name: str, variant: int = 0) -> Components:
@@ -87,7 +81,8 @@ def start(name: str, variant: int = 0) -> Components:
 
     `name` is one of `names()`, such a name with an m before it for the mirror image, a knot to 13 crossings
     where sono[knotinfo] is installed, a torus type "T(p,q)", a chain of rings "chain3", or a braid word
-    "1 -2 1 -2" of two generators or more; letter case and surrounding space do not matter.
+    "1 -2 1 -2" of two generators or more; letter case and surrounding space do not matter. Prime links to 9
+    crossings are called as Thistlethwaite, L5a1 or L5a1{1}, or Rolfsen, 5^2_1, calls them: see `links`.
 
     Variant 0 is a closed braid or a torus knot, ready to be tightened. Each further `variant` is another
     conformation of the same type. Those of a knot in the tables are random arc presentations, some of them
@@ -99,6 +94,8 @@ def start(name: str, variant: int = 0) -> Components:
     if plain[:1].casefold() == "m":
         return mirror(start(plain[1:], variant))
     plain = {known.casefold(): known for known in names()}.get(plain.casefold(), plain)
+    if plain not in _DRAWN and (link := link_row(plain)):
+        return _link(link, variant)
     row = _from_knotinfo(plain) if _KNOTINFO.fullmatch(plain) else _knots().get(plain)
     if row and variant > 0:
         return grid(shuffled(_strokes(row["grid"]), variant, variant // SAME_SIZE % SIZES))
@@ -108,6 +105,17 @@ def start(name: str, variant: int = 0) -> Components:
         raise ValueError(f"variant = {variant}: only the knots of the tables have negative variants")
     curve = _drawn(_DRAWN.get(plain) or (row["braid"] if row else plain))
     return scramble(curve, variant) if variant else curve
+
+
+def _link(row: dict[str, str], variant: int) -> Components:
+    """Return a conformation of a link of the table. Raises `ValueError` for a negative variant."""
+    if variant < 0:
+        raise ValueError(f"variant = {variant}: links have no negative variants")
+    drawn = braid([int(generator) for generator in row["braid"].split(",")])
+    if not variant:
+        return drawn
+    strokes = shuffled(_strokes(row["grid"]), variant, variant // SAME_SIZE % SIZES)
+    return oriented_like(grid(strokes), drawn)
 
 
 def _drawn(name: str) -> Components:
@@ -122,7 +130,7 @@ def _drawn(name: str) -> Components:
         raise ValueError("unknown knot '10_166': Rolfsen's 10_166 is 10_165, as his 10_161 is his 10_162")
     near = difflib.get_close_matches(name, names(), n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    known = "3_1 to 10_165, Hopf, chain3, T(p,q) and braid words"
+    known = "3_1 to 10_165, L2a1 to L9n28, 2^2_1 to 9^4_1, Hopf, chain3, T(p,q) and braid words"
     raise ValueError(f"unknown knot {name!r}: {hint}Known are {known}")
 
 
