@@ -24,6 +24,7 @@ from sono.starts.flypes import flyped
 from sono.starts.links import link_names, link_row, oriented_like
 from sono.starts.planar import Diagram, lifted
 from sono.starts.scramble import scramble
+from sono.starts.sums import joined
 from sono.starts.tables import table
 from sono.starts.torus import chain, torus
 
@@ -64,12 +65,16 @@ def names() -> list[str]:
 
 def has_variants(name: str) -> bool:
     """Tell whether further variants of this name are more than scrambles of the plain one."""
+    if "#" in name:
+        return all(map(has_variants, name.split("#")))
     plain = re.sub("^m", "", name.strip(), flags=re.IGNORECASE)
     return plain in _knots() or _KNOTINFO.fullmatch(plain) is not None
 
 
 def knows(name: str) -> bool:
     """Tell whether this looks like the name of a knot, without drawing it."""
+    if "#" in name:
+        return all(map(knows, name.split("#")))
     plain = re.sub("^m", "", name.strip(), flags=re.IGNORECASE)
     patterns = (_TORUS, _CHAIN, _BRAID, _KNOTINFO)
     known = plain.casefold() in map(str.casefold, names()) or link_row(plain) is not None
@@ -82,7 +87,8 @@ def start(name: str, variant: int = 0) -> Components:
     `name` is one of `names()`, such a name with an m before it for the mirror image, a knot to 13 crossings
     where sono[knotinfo] is installed, a torus type "T(p,q)", a chain of rings "chain3", or a braid word
     "1 -2 1 -2" of two generators or more; letter case and surrounding space do not matter. Prime links to 9
-    crossings are called as Thistlethwaite, L5a1 or L5a1{1}, or Rolfsen, 5^2_1, calls them: see `links`.
+    crossings are called as Thistlethwaite, L5a1 or L5a1{1}, or Rolfsen, 5^2_1, calls them: see `links`. A sum
+    such as "3_1#m3_1" joins the first components of its parts.
 
     Variant 0 is a closed braid or a torus knot, ready to be tightened. Each further `variant` is another
     conformation of the same type. Those of a knot in the tables are random arc presentations, some of them
@@ -90,6 +96,9 @@ def start(name: str, variant: int = 0) -> Components:
     Those of other knots are isotopic scrambles. Raises ValueError, with the nearest known name, for anything
     else.
     """
+    first, *others = name.split("#")
+    if others:
+        return joined(start(first, variant), start("#".join(others), variant), abs(variant))
     plain = name.strip()
     if plain[:1].casefold() == "m":
         return mirror(start(plain[1:], variant))
