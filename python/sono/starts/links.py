@@ -23,10 +23,15 @@ _ROLFSEN = re.compile(r"(\d)[\^.](\d)[_.](\d{1,2})")
 
 
 @cache
+def _links() -> list[dict[str, str]]:
+    return table("links")
+
+
+@cache
 def _rows() -> dict[str, dict[str, str]]:
     """Return the rows of the table by all their names, in lower case."""
     found: dict[str, dict[str, str]] = {}
-    for row in table("links"):
+    for row in _links():
         link = row["link"].replace(" ", "")
         found[link.casefold()] = row
         for name in (link.split("{")[0], row["rolfsen"]):
@@ -34,10 +39,11 @@ def _rows() -> dict[str, dict[str, str]]:
     return found
 
 
-def link_names() -> list[str]:
+@cache
+def link_names() -> tuple[str, ...]:
     """Return the names without orientations: Thistlethwaite's, Rolfsen's, and common ones."""
-    rows = table("links")
-    return [*dict.fromkeys(row["link"].split("{")[0] for row in rows), *_rolfsens(rows), *COMMON]
+    rows = _links()
+    return (*dict.fromkeys(row["link"].split("{")[0] for row in rows), *_rolfsens(rows), *COMMON)
 
 
 def link_row(name: str) -> dict[str, str] | None:

@@ -126,9 +126,11 @@ def check_settings(changes: Changes) -> None:
         if not _is_number(value, most):
             kind = "a finite number" if most is None else f"a whole number from 0 to {most}"
             raise ValueError(f"setting {name} = {value!r} is not {kind}")
-    # The core checks the ranges when an engine begins, which on a triangle costs nothing.
-    Tightener([np.eye(3)], "settle", 60, json.dumps(of_sono(changes)))
-    Polish([np.eye(3)], 60, False, 0, of_polish(changes))
+    # The core checks the ranges when an engine begins, on a triangle in no time.
+    if sono := of_sono(changes):
+        Tightener([np.eye(3)], "settle", 60, json.dumps(sono))
+    if len(sono) < len(changes):
+        Polish([np.eye(3)], 60, False, 0, of_polish(changes))
 
 
 def whole(name: str, value: Any, least: int | None = None, most: int | None = None) -> int:
