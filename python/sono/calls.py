@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypeAlias, cast
 
 from sono import _core, curve, formats, starts
@@ -246,9 +245,8 @@ def compare(rope: Rope, knot: str) -> Comparison:
         raise ValueError(f"{knot!r} is no name of a knot")
     measures = measure(_components(rope))
     row = published.extrapolated({"knot": knot, "n": measures.n, "l_a": measures.l_a, "l_c": measures.l_c})
-    found = published.beside(row, published.table())
-    get: Callable[[str], Any] = partial(dict(found).get)
-    return Comparison(*(get(key) for key in Comparison.__dataclass_fields__))
+    found: Any = published.beside(row, published.table())
+    return Comparison(*(found.get(field.name) for field in fields(Comparison)))
 
 
 def _components(vertices: Rope) -> list[Any]:

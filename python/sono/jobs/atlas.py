@@ -21,7 +21,7 @@ from sono.curve import Components, forces, measure
 from sono.formats import FormatError
 from sono.formats.ropefile import TIGHT, Header, Searched
 from sono.invariants import fingerprint, homfly
-from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured
+from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured, rope_in
 from sono.searching.minima import same_edges
 from sono.searching.trials import FINE_EDGE, Watch, unwatched
 from sono.tables import Row, Value, published
@@ -114,10 +114,10 @@ class Atlas:
 
     def _fit(self, file: str, watch: Watch) -> Components:
         """Return the rope of a file: tight, of radius 1, with edges of FINE_EDGE, centred."""
-        curve, m = measured(file)
+        curve, m, header = rope_in(file)
         components = [component / m.r_s for component in curve.components]
         fits = same_edges(m.dl / m.r_s, FINE_EDGE)
-        if not (fits and header_of(file).status == TIGHT and forces(components).residual <= KEPT_RESIDUAL):
+        if not (fits and header.status == TIGHT and forces(components).residual <= KEPT_RESIDUAL):
             polished = _polished(components, FINE_EDGE, watch)
             if not polished.converged:
                 raise ValueError(f"{file}: does not get tight with {polished.measures.n} vertices")
@@ -129,8 +129,8 @@ class Atlas:
 
         Raises `FormatError` and `ValueError`.
         """
-        file, m = measured(self.path(knot))
-        found = header_of(self.path(knot)).searched
+        file, m, header = rope_in(self.path(knot))
+        found = header.searched
         variant, seed = (found.variant, found.seed) if found else (None, None)
         return {
             **{"knot": knot, "n": m.n, "dl": m.dl, "l_p": m.l_p, "l_c": m.l_c, "l_a": m.l_a},

@@ -22,8 +22,19 @@ contacts just out of touch, which at mu = 1e-11 bear that much, are left out."""
 def measured(source: str) -> tuple[VertexFile, Measures]:
     """Read and measure a curve file. Raises `FormatError` naming file and line."""
     file = formats.read(source)
+    return file, _measures(file)
+
+
+def rope_in(path: str) -> tuple[VertexFile, Measures, Header]:
+    """Read and measure a rope's file, and its header, likewise."""
+    name, text = formats.load(path)
+    file = formats.parse(name, text)
+    return file, _measures(file), ropefile.parse(text)
+
+
+def _measures(file: VertexFile) -> Measures:
     try:
-        return file, measure(file.components)
+        return measure(file.components)
     except CurveError as error:
         raise located(error, file) from error
 

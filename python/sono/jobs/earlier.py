@@ -10,7 +10,7 @@ from sono.curve import forces, measure
 from sono.formats import FormatError
 from sono.formats.ropefile import STOPPED, TIGHT
 from sono.invariants import fingerprint
-from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured
+from sono.jobs.curvefiles import KEPT_RESIDUAL, rope_in
 from sono.jobs.quest import Quest
 from sono.jobs.result import as_row
 from sono.patience import patiently
@@ -69,8 +69,7 @@ def left_in(job: Quest, origin: str, source: Source, look: Watch) -> Earlier | N
     output = job.output
     if not os.path.isfile(output):
         return None
-    file, measures = measured(output)
-    header = header_of(output)
+    file, measures, header = rope_in(output)
     # Invariants do not tell all knots apart; where the file says what it was made from, that has to fit.
     made_from = None if header.made else header.origin
     why = "was found from another curve" if made_from and made_from != origin else None

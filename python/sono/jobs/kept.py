@@ -6,7 +6,7 @@ from sono.curve import forces
 from sono.formats import FormatError, VertexFile
 from sono.formats.ropefile import SETTLED, STUCK, TIGHT, figures
 from sono.jobs import contacts
-from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured
+from sono.jobs.curvefiles import KEPT_RESIDUAL, rope_in
 from sono.jobs.order import Order, judged, made_from, rope_row, shown, tolerance
 from sono.jobs.result import Result
 from sono.tightening.targets import Target, aimed
@@ -16,10 +16,9 @@ def kept_row(job: Order, file: VertexFile, n: Target) -> Result:
     """Give the row of an output that is there from an earlier run of the same job."""
     output = job.outputs[n]
     try:
-        rope, measures = measured(output)
+        rope, measures, header = rope_in(output)
         if measures.n != aimed(n, measures.l_p):
             raise FormatError(f"{output}: has {measures.n} vertices, not {shown(n)}; move it away")
-        header = header_of(output)
         if not header.made or header.origin != made_from(job, file):
             other = "is of another curve, method or setting"
             raise FormatError(f"{output}: {other}; repeat those or move it away, or --force starts anew")

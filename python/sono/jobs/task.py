@@ -17,7 +17,7 @@ from sono.formats import FormatError, VertexFile, is_stream
 from sono.formats.ropefile import SETTLED, STOPPED, STUCK, TIGHT, Header, Made
 from sono.invariants import fingerprint
 from sono.jobs import checkpoints, contacts
-from sono.jobs.curvefiles import free_name, header_of, located, measured, names_of_best
+from sono.jobs.curvefiles import free_name, located, measured, names_of_best, rope_in
 from sono.jobs.order import Order, judged, made_from, rope_row, shown
 from sono.jobs.result import Result
 from sono.tables import Row
@@ -181,8 +181,8 @@ class Task:
         longer = (1 - SUPERSEDED) * (tight.measures.l_c or math.inf)
         for path in filter(os.path.exists, islice(names_of_best(output), UNFINISHED)):
             with suppress(ValueError, OSError):
-                file, measures = measured(path)
-                unfinished = header_of(path).status == STOPPED
+                file, measures, header = rope_in(path)
+                unfinished = header.status == STOPPED
                 same = unfinished and fingerprint(file.components) == fingerprint(tight.curve)
                 if same and (measures.l_c or math.inf) >= longer:
                     os.unlink(path)
