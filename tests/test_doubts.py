@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sono import starts
-from sono.formats import FormatError, text
+from sono.formats import FormatError, VertexFile, text
 from sono.formats.doubts import closing_edge, jumps
 
 Floats = NDArray[np.float64]
@@ -60,7 +60,7 @@ def test_jumps_in_a_link_are_found() -> None:
 def test_the_jumps_are_named_with_their_lines() -> None:
     inside, through = wrapped(TREFOIL, np.array([5.0, 50.0, 50.0]), np.array([1.0, 20.0, 20.0]))
     with pytest.raises(FormatError) as caught:
-        text.read("# a comment\n" + text.write([inside], []), "k")
+        VertexFile.checked("k", *text.read("# a comment\n" + text.write([inside], []), "k"))
     lines = ((through + 1) % len(inside) + 2).tolist()
     message = str(caught.value)
     assert message.startswith(f"k:{lines[0]}: a periodic box of about ")
@@ -90,7 +90,7 @@ def test_the_library_is_beyond_doubt(name: str, variant: int) -> None:
 
 def test_an_open_chain_is_told() -> None:
     walk = np.cumsum(np.random.default_rng(3).normal([0.5, 0, 0], size=(100, 3)), axis=0)
-    chain = text.read(text.write([TREFOIL, walk + 100], []), "k")
+    chain = VertexFile.checked("k", *text.read(text.write([TREFOIL, walk + 100], []), "k"))
     (doubt,) = chain.doubts()
     times = round(closing_edge(walk))
     assert times > 20

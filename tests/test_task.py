@@ -136,14 +136,14 @@ def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -
 
 @contextmanager
 def full(path: Any) -> Iterator[None]:
-    """Stands in for `atomic_text` on a full disk."""
+    """Stands in for `atomic` on a full disk."""
     raise OSError(errno.ENOSPC, "No space left on device")
     yield
 
 
 def make_disk(monkeypatch: pytest.MonkeyPatch, write: Any) -> None:
     for module in (formats, formats.files):
-        monkeypatch.setattr(module, "atomic_text", write)
+        monkeypatch.setattr(module, "atomic", write)
 
 
 def test_a_disk_that_fills_up(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,7 +168,7 @@ def test_a_disk_that_fills_up(job: Job, monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_disk_that_is_full_for_a_while(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(task, "SAVE_EVERY", 0)
 
-    with_room = formats.atomic_text
+    with_room = formats.atomic
 
     def full_during_the_anneal(progress: Progress) -> None:
         make_disk(monkeypatch, full if progress.stage == "anneal" else with_room)

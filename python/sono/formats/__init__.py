@@ -1,13 +1,16 @@
-"""Curve files in and out: one module a format, each with `read(text, name)` and `write`.
+"""Curve files in and out: one module a format, each with `read(text, name)` or `write`, or both.
 
-A new format is one module and a line in `FORMATS`, with its suffixes in `SUFFIXES`. A file that is read is
-recognised by its content unless the suffix tells, and is plain text when nothing else fits; one that is
-written needs a suffix that is known, or none.
+A new format is one module and a line in `READERS` or `WRITERS`, with its suffixes in `SUFFIXES`. A file that
+is read is recognised by its content unless the suffix tells, and is plain text when nothing else fits; one
+that is written needs a suffix that is known, or none.
+
+A file may hold several curves, such as the frames of a simulation: `traj.xyz:12` is the one with the key 12.
 
 May import `curve` and `printing`.
 """
 
 import os
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import PurePath
 from typing import Protocol
@@ -16,65 +19,103 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import text, vect
-from sono.formats.files import atomic_text, is_stream, load, part_of, save
-from sono.formats.vertices import FormatError, VertexFile
+from sono.formats.files import atomic, decoded, is_stream, load, part_of, save
+from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
 
 __all__ = [
-    "FORMATS",
+    "READERS",
     "SUFFIXES",
+    "WRITERS",
     "FormatError",
     "VertexFile",
-    "atomic_text",
+    "atomic",
     "by_suffix",
+    "chosen",
+    "decoded",
     "is_stream",
     "load",
     "parse",
     "part_of",
     "read",
+    "read_all",
     "save",
+    "split",
     "write",
 ]
 
 
-class Format(Protocol):
-    """What a format module offers."""
+class Reader(Protocol):
+    """What the module of a format that is read offers."""
 
     def recognises(self, text: str) -> bool:
         """Tell whether a text looks like a file of this format; the first that does is taken."""
 
-    def read(self, text: str, name: str) -> VertexFile:
-        """Parse a whole file; `name` is for messages."""
+    def read(self, text: str, name: str) -> Sequence[Raw]:
+        """Parse a whole file into its curves, at least one; `name` is for messages."""
 
-    def write(self, components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:
+
+class Writer(Protocol):
+    """What the module of a format that is written offers."""
+
+    def write(self, components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str | bytes:
         """Give the whole file."""
 
 
-FORMATS: dict[str, Format] = {
+READERS: dict[str, Reader] = {
     "vect": vect,
     "text": text,  # the last one, as it takes any text for its own
 }
+
+WRITERS: dict[str, Writer] = {"vect": vect, "text": text}
 
 PLAIN = "text"
 """The format whose suffixes say nothing."""
 
 SUFFIXES = {"": "text", ".txt": "text", ".xyz": "text", ".dat": "text", ".vect": "vect"}
-"""The format of a file that is written, by its suffix."""
+"""The format of a file by its suffix."""
 
 
 def read(source: str | os.PathLike[str]) -> VertexFile:
     """Read a curve of one or more components from a file, or from standard input when `source` is "-".
 
-    Every component has at least three vertices, finite coordinates and no two equal neighbours; a last vertex
-    that repeats the first is dropped. Lengths keep the file's unit. Raises `FormatError`.
+    Of a file that holds several curves, "FILE:KEY" reads one. Every component has at least three vertices,
+    finite coordinates and no two equal neighbours; a last vertex that repeats the first is dropped. Lengths
+    keep the file's unit. Raises `FormatError`.
     """
-    return parse(*load(source))
+    path, key = split(os.fspath(source))
+    return chosen(path, parse(*load(path)), key)
 
 
-def parse(name: str, content: str) -> VertexFile:
-    """Read the text of a curve file, likewise; `name` is for messages, and its suffix counts."""
+def chosen(name: str, curves: Sequence[VertexFile], key: str | None) -> VertexFile:
+    """Return the curve of a file that has this key, or the only one. Raises `FormatError`."""
+    found = [curve for curve in curves if key in (None, curve.key)]
+    if len(found) == 1:
+        return found[0]
+    keys = ", ".join(curve.key for curve in curves[:SHOWN]) + (" and so on" if len(curves) > SHOWN else "")
+    if key is None:
+        raise FormatError(f"{name}: holds {len(curves)} curves; {name}:{curves[0].key} is one, of: {keys}")
+    raise FormatError(f"{name}: holds no curve {shown(key)}; there are: {keys or 'no others'}")
+
+
+def read_all(source: str | os.PathLike[str]) -> list[VertexFile]:
+    """Read all curves of a file, or the one of "FILE:KEY", likewise."""
+    path, key = split(os.fspath(source))
+    return parse(*load(path)) if key is None else [read(source)]
+
+
+def split(source: str) -> tuple[str, str | None]:
+    """Split "FILE:KEY" into the file and the key of one of its curves; without a key it is None."""
+    colons = [] if os.path.exists(source) else [match.start() for match in re.finditer(":", source)]
+    cut = next((colon for colon in colons if os.path.isfile(source[:colon])), None)
+    return (source, None) if cut is None else (source[:cut], source[cut + 1 :])
+
+
+def parse(name: str, data: bytes) -> list[VertexFile]:
+    """Read the bytes of a file, likewise; `name` is for messages, and its suffix counts."""
+    content = decoded(name, data)
     own = SUFFIXES.get(_suffix(name), PLAIN)
-    known = own if own != PLAIN else next(key for key in FORMATS if FORMATS[key].recognises(content))
-    return FORMATS[known].read(content, name)
+    known = own if own != PLAIN else next(key for key in READERS if READERS[key].recognises(content))
+    return [VertexFile.checked(name, raw) for raw in READERS[known].read(content, name)]
 
 
 def write(
@@ -91,20 +132,20 @@ def write(
     """
     name = os.fspath(target)
     format = format or by_suffix(name)
-    if format not in FORMATS:
-        raise ValueError(f"unknown format {format!r}; the formats are: {', '.join(sorted(FORMATS))}")
-    content = FORMATS[format].write(components, comments)
-    save(name, content)
+    if format not in WRITERS:
+        raise ValueError(f"unknown format {format!r}; the formats are: {', '.join(sorted(WRITERS))}")
+    save(name, WRITERS[format].write(components, comments))
 
 
 def by_suffix(name: str) -> str:
     """Return the format in which a file of this name is written. Raises `FormatError` for another suffix."""
     suffix = _suffix(name)
-    if suffix not in SUFFIXES and not is_stream(name):
-        known = ", ".join(filter(None, SUFFIXES))
+    format = SUFFIXES.get(suffix, PLAIN if is_stream(name) else "")
+    if format not in WRITERS:
+        known = ", ".join(suffix for suffix, format in SUFFIXES.items() if suffix and format in WRITERS)
         raise FormatError(f"{name}: {suffix} is no format for vertices; the suffixes are: {known}, or none")
-    return SUFFIXES.get(suffix, "text")
+    return format
 
 
 def _suffix(name: str) -> str:
-    return PurePath(name).suffix.lower()
+    return PurePath(name.lower().removesuffix(".gz")).suffix

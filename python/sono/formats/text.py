@@ -16,7 +16,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.vertices import FormatError, VertexFile, not_a_number, numbers, shown
+from sono.formats.vertices import Chain, FormatError, Raw, not_a_number, numbers, shown
 
 
 def recognises(text: str) -> bool:
@@ -24,9 +24,9 @@ def recognises(text: str) -> bool:
     return True
 
 
-def read(text: str, name: str) -> VertexFile:
+def read(text: str, name: str) -> list[Raw]:
     """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
-    components: list[tuple[list[tuple[float, float, float]], list[int]]] = []
+    chains: list[Chain] = []
     rows: list[tuple[float, float, float]] = []
     lines: list[int] = []
     for number, line in enumerate((*text.split("\n"), ""), 1):  # the empty line ends the last component
@@ -40,11 +40,11 @@ def read(text: str, name: str) -> VertexFile:
             rows.append((x, y, z))
             lines.append(number)
         elif rows and not line.strip():
-            components.append((rows, lines))
+            chains.append(Chain(rows, lines))
             rows, lines = [], []
-    if not components:
+    if not chains:
         raise FormatError.at(name, 1, "the file holds no vertices; give rows of three numbers x y z")
-    return VertexFile.checked(name, components)
+    return [Raw(chains)]
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.vertices import FormatError, VertexFile, ends_meet, not_a_number, numbers, shown
+from sono.formats.vertices import Chain, FormatError, Raw, ends_meet, not_a_number, numbers, shown
 
 
 def recognises(text: str) -> bool:
@@ -24,7 +24,7 @@ def recognises(text: str) -> bool:
     return next(words, "").endswith("VECT")
 
 
-def read(text: str, name: str) -> VertexFile:
+def read(text: str, name: str) -> list[Raw]:
     """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
     words = _Words(text, name)
     words.header()
@@ -39,10 +39,10 @@ def read(text: str, name: str) -> VertexFile:
         lines.append(words.line)
     words.agree(sum(map(abs, sizes)), vertices, "vertices")
     words.agree(sum(words.count("the colour count of a polyline") for _ in sizes), colours, "colours")
-    components = [words.rows(size, line) for size, line in zip(sizes, lines, strict=True)]
+    chains = [Chain(*words.rows(size, line)) for size, line in zip(sizes, lines, strict=True)]
     words.numbers(4 * colours, "a colour")
     words.end()
-    return VertexFile.checked(name, components)
+    return [Raw(chains)]
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,20 +33,50 @@ class FormatError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
+class Chain:
+    """One component as a file has it: its vertices, `rows` (n, 3), and the `lines` (n,) that they stand on.
+
+    A format in which chains may be open says whether this one is `closed`; None leaves that to its ends.
+    """
+
+    rows: Any
+    lines: Sequence[int]
+    closed: bool | None = True
+
+
+@dataclass(frozen=True, eq=False)
+class Raw:
+    """A curve as a format has read it, not yet checked.
+
+    The `key` tells it from the others in its file, if there may be any. The `notes` tell the user what was
+    made of the file.
+    """
+
+    chains: Sequence[Chain]
+    key: str = ""
+    notes: Sequence[str] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class VertexFile:
-    """A curve as read: `components`, each (n_i, 3) in the file's unit, and the `lines`, each (n_i,)."""
+    """A curve as read: `components`, each (n_i, 3) in the file's unit, and the `lines`, each (n_i,).
+
+    The `key` tells it from others of the same file. The `notes` tell the user what was made of the file.
+    """
 
     name: str
     components: list[NDArray[np.float64]]
     lines: list[NDArray[np.int64]]
+    key: str = ""
+    notes: Sequence[str] = ()
 
     def where(self, component: int, vertex: int) -> str:
         """Say where a vertex stands (both indices 0-based), as "name:line"."""
         return f"{self.name}:{self.lines[component][vertex]}"
 
     def doubts(self) -> list[str]:
-        """Say which components look like open chains."""
-        return [
+        """Say what was made of the file, and which components look like open chains."""
+        return [*self.notes] + [
             f"{self.where(component, -1)}: the edge that closes the curve, from here back to line "
             f"{self.lines[component][0]}, is {far:.0f} times the mean edge; "
             "if this chain is open, its knot is what this edge makes of it"
@@ -55,12 +85,13 @@ class VertexFile:
         ]
 
     @classmethod
-    def checked(
-        cls, name: str, components: Sequence[tuple[Sequence[Sequence[float]], Sequence[int]]]
-    ) -> "VertexFile":
-        """Check components, each as (rows of x y z, their line numbers). Raises `FormatError`."""
-        pairs = [_closed(name, np.array(rows, np.float64), np.array(lines)) for rows, lines in components]
-        curve = cls(name, [vertices for vertices, _ in pairs], [lines for _, lines in pairs])
+    def checked(cls, name: str, raw: Raw) -> "VertexFile":
+        """Check a curve that was read. Raises `FormatError`."""
+        pairs = [
+            _closed(name, np.array(chain.rows, np.float64), np.array(chain.lines)) for chain in raw.chains
+        ]
+        components, lines = [vertices for vertices, _ in pairs], [lines for _, lines in pairs]
+        curve = cls(name, components, lines, raw.key, raw.notes)
         curve._refuse_jumps()
         return curve
 

@@ -34,8 +34,7 @@ class SentJob:
         """Do the job, giving its rows when all of it has come back. `show` may raise `Stopped`."""
         job = self.job
         try:
-            content = formats.load(job.source) if not sources.is_name(job.source) else None
-            file = formats.parse(*content) if content else sources.read(job.source)
+            content, file = sources.with_content(job.source)
             kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
             for n in kept:
                 yield kept_row(job, file, n)
@@ -65,11 +64,11 @@ class SentJob:
 
 
 def _away(
-    job: Job, content: tuple[str, str] | None, free: dict[str, str]
-) -> "tuple[list[Result], dict[str, str]]":
+    job: Job, content: sources.Content | None, free: dict[str, str]
+) -> "tuple[list[Result], dict[str, bytes]]":
     """Do a job far from its files: give its results, and what is to be written to them.
 
-    `content` is the name and the text of its source, if that is a file; `free` says for each output where an
+    `content` is the name and the bytes of its source, if that is a file; `free` says for each output where an
     unfinished rope is to go.
     """
     with tempfile.TemporaryDirectory() as folder:
@@ -82,16 +81,18 @@ def _away(
             here[free_name(temporary)] = free.get(path, path)
             return temporary
 
-        source = moved(content[0]) if content else job.source
+        source = file = job.source
         if content:
-            formats.save(source, content[1])
+            file = moved(content.name)
+            formats.save(file, content.data)
+            source = f"{file}:{content.key}" if content.key else file
         outputs = {n: moved(path) for n, path in job.outputs.items()}
         between = {n: moved(path) for n, path in job.forces.items()}
         done = [
             _named(result, here)
             for result in run(replace(job, source=source, outputs=outputs, forces=between), lambda _: None)
         ]
-        written = [path for path in here if path != source and os.path.exists(path)]
+        written = [path for path in here if path != file and os.path.exists(path)]
         return done, {here[path]: formats.load(path)[1] for path in written}
 
 

@@ -27,9 +27,9 @@ def measured(source: str) -> tuple[VertexFile, Measures]:
 
 def rope_in(path: str) -> tuple[VertexFile, Measures, Header]:
     """Read and measure a rope's file, and its header, likewise."""
-    name, text = formats.load(path)
-    file = formats.parse(name, text)
-    return file, _measures(file), ropefile.parse(text)
+    name, data = formats.load(path)
+    (file,) = formats.parse(name, data)
+    return file, _measures(file), ropefile.parse(formats.decoded(name, data))
 
 
 def _measures(file: VertexFile) -> Measures:
@@ -70,4 +70,4 @@ def digest(file: VertexFile, *settings: Any) -> str:
 
 def header_of(path: str) -> Header:
     """Read the header of a rope's file. Raises `FormatError`."""
-    return ropefile.parse(formats.load(path)[1])
+    return ropefile.parse(formats.decoded(*formats.load(path)))

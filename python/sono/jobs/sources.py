@@ -1,6 +1,7 @@
 """Where a curve comes from: a file, standard input, or the name of a knot."""
 
 import os
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,13 +14,32 @@ _OF_FILES = "./\\"
 
 def is_name(source: str) -> bool:
     """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
-    is_file = os.path.exists(source) and not os.path.isdir(source)
+    file = formats.split(source)[0]
+    is_file = os.path.exists(file) and not os.path.isdir(file)
     return source != "-" and not is_file and not set(_OF_FILES) & set(source)
 
 
 def shadowed(source: str) -> bool:
     """Tell whether this is a file here that is called like a knot, which it takes the place of."""
     return os.path.isfile(source) and not set(_OF_FILES) & set(source) and starts.knows(source)
+
+
+@dataclass(frozen=True)
+class Content:
+    """What is in a file, whose curve has this key if it holds several."""
+
+    name: str
+    data: bytes
+    key: str | None
+
+
+def with_content(source: str) -> tuple[Content | None, VertexFile]:
+    """Read a source, likewise, and if it is a file give what it holds. Raises `FormatError`."""
+    if is_name(source):
+        return None, read(source)
+    path, key = formats.split(source)
+    content = Content(*formats.load(path), key)
+    return content, formats.chosen(content.name, formats.parse(content.name, content.data), key)
 
 
 def read(source: str) -> VertexFile:
