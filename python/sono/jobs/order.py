@@ -10,6 +10,7 @@ from sono.formats import VertexFile, is_stream
 from sono.formats.ropefile import STUCK
 from sono.jobs.curvefiles import digest
 from sono.jobs.result import Result, as_row
+from sono.jobs.sources import Source
 from sono.tables import Row
 from sono.tightening import Method
 from sono.tightening.settings import TRIALS, default_settings
@@ -18,7 +19,7 @@ from sono.tightening.targets import Target
 
 @dataclass(frozen=True)
 class Order:
-    """Tighten the curve in `source` ("-" is standard input) to each target that is in `outputs`.
+    """Tighten the curve of `source` to each target that is in `outputs`.
 
     `name` is the curve's name in tables. `outputs` says where the vertices for each go, and `forces` where
     those between them, if they are wanted; "-" is standard output. `time_limit` is in seconds. `checkpoint`
@@ -26,7 +27,7 @@ class Order:
     that are there are not computed again.
     """
 
-    source: str
+    source: Source
     name: str
     outputs: dict[Target, str]
     settings: dict[str, Any]
