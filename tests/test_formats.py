@@ -182,7 +182,7 @@ def test_where_counts_comments_and_blank_lines() -> None:
             "give three numbers x y z, and start other lines with #",
         ),
         ("# a\n0 0\n", "k.xyz:2: 2 columns; give three numbers x y z, and start other lines with #"),
-        ("1 0 0 0\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
+        ("1 0 0 C\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
         ("1, ,0,0\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
         (
             "the knot 3_1 in five\n",
