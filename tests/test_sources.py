@@ -28,7 +28,6 @@ class Frames:
 def frames(folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """A file of three curves, the second of which is wrong."""
     monkeypatch.setattr(formats, "READERS", {"frames": Frames(), **formats.READERS})
-    monkeypatch.setattr(formats, "SEVERAL", {"frames"})
     trefoil = text.write(starts.start("3_1"), [])
     Path("run.txt").write_text(f"FRAME 1\n{trefoil}FRAME b/2\n0 0 0\nFRAME 3\n{trefoil}")
     return "run.txt"

@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import text, vect
+from sono.formats import text, vect, xyz
 from sono.formats.closing import Close
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
@@ -67,19 +67,23 @@ class Writer(Protocol):
 
 READERS: dict[str, Reader] = {
     "vect": vect,
+    "xyz": xyz,
     "text": text,  # the last one, as it takes any text for its own
 }
 
-SEVERAL: set[str] = set()
-"""The formats whose files may hold several curves, so that a batch looks into them before it begins."""
+SINGLE = {"text", "vect"}
+"""The formats whose files hold one curve; into others a batch looks before it begins."""
 
-WRITERS: dict[str, Writer] = {"vect": vect, "text": text}
+WRITERS: dict[str, Writer] = {"vect": vect, "xyz": xyz, "text": text}
 
 PLAIN = "text"
-"""The format whose suffixes say nothing."""
+"""The format of what has no suffix."""
 
-SUFFIXES = {"": "text", ".txt": "text", ".xyz": "text", ".dat": "text", ".vect": "vect"}
+SUFFIXES = {"": "text", ".txt": "text", ".dat": "text", ".xyz": "xyz", ".vect": "vect"}
 """The format of a file by its suffix."""
+
+LOOSE = {PLAIN, "xyz"}
+"""The formats whose suffixes say little of what is in a file: plain rows are called .xyz as well."""
 
 
 def read(source: str | os.PathLike[str], close: Close | None = None) -> VertexFile:
@@ -136,7 +140,7 @@ def may_hold_several(path: str) -> bool:
     What cannot be read twice may, and what cannot be read.
     """
     try:
-        return is_stream(path) or _format_of(path, head(path)) in SEVERAL
+        return is_stream(path) or _format_of(path, head(path)) not in SINGLE
     except FormatError:
         return True
 
@@ -144,7 +148,7 @@ def may_hold_several(path: str) -> bool:
 def _format_of(name: str, data: bytes) -> str:
     """Tell which format a file of this name has that begins like this. Raises `FormatError`."""
     own = SUFFIXES.get(_suffix(name), PLAIN)
-    if own != PLAIN:
+    if own not in LOOSE:
         return own
     content = decoded(name, data)
     return next(key for key in READERS if READERS[key].recognises(content))

@@ -64,7 +64,12 @@ class Layout:
     @classmethod
     def of_header(cls, line: str) -> Self | None:
         """Take a line for a header if it names x, y and z. Raises `ValueError` for frames."""
-        names = [cell.lower() for cell in cells_of(_UNIT.sub("", line))]
+        return cls.of_names(cells_of(_UNIT.sub("", line)))
+
+    @classmethod
+    def of_names(cls, columns: Sequence[str]) -> Self | None:
+        """Find the columns by their names, likewise; None without x, y and z."""
+        names = [name.lower() for name in columns]
         if frame := next((name for name in names if name in FRAMES), None):
             raise ValueError(f"the column {shown(frame)} tells frames apart; give a file for each frame")
         axes = [_axis(name) for name in names]
@@ -149,15 +154,43 @@ class Rows:
             raise ValueError(f"the index {step} from {before:.0f} to {index:.0f}; {cure}")
 
 
+class Parts:
+    """The components of a curve, as their rows come."""
+
+    def __init__(self) -> None:
+        """Begin."""
+        self._parts: dict[tuple[int, str], Rows] = {}
+        self._block = 0
+
+    def separate(self) -> None:
+        """Have the next row begin a component."""
+        self._block += 1
+
+    def add(self, layout: Layout, cells: Sequence[str], line: int) -> None:
+        """Take a row. Raises `ValueError` that says what is wrong."""
+        self._parts.setdefault((self._block, layout.part(cells)), Rows(layout)).add(cells, line)
+
+    def chains(self, closed: bool | None) -> list[Chain]:
+        """Give the components."""
+        return [Chain(part.rows, part.lines, closed) for part in self._parts.values()]
+
+    def refuse_runs(self, name: str) -> None:
+        """Refuse words that change where elements would not. Raises `FormatError`."""
+        for part in self._parts.values():
+            _refuse_runs(name, part)
+
+
 def read(text: str, name: str) -> list[Raw]:
     """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
     layout: Layout | None = None
-    parts: dict[tuple[int, str], Rows] = {}
-    block = 0
+    parts = Parts()
+    comments = []
     for number, line in enumerate(text.split("\n"), 1):
-        data = line.partition("#")[0].strip()
-        if not data:
-            block += not line.strip()
+        data, mark, comment = line.partition("#")
+        if not (data := data.strip()):
+            comments += [comment.strip()] if mark else []
+            if not mark:
+                parts.separate()
             continue
         try:
             if layout is None and (layout := Layout.of_header(data)):
@@ -166,14 +199,13 @@ def read(text: str, name: str) -> list[Raw]:
             layout = layout or Layout.of_row(cells)
             if not layout:
                 raise ValueError(wrong(data))
-            parts.setdefault((block, layout.part(cells)), Rows(layout)).add(cells, number)
+            parts.add(layout, cells, number)
         except ValueError as error:
             raise FormatError.at(name, number, str(error)) from None
-    if not parts:
+    parts.refuse_runs(name)
+    if not (chains := parts.chains(True)):
         raise FormatError.at(name, 1, "there are no rows under the header; give numbers x y z")
-    for part in parts.values():
-        _refuse_runs(name, part)
-    return [Raw([Chain(part.rows, part.lines) for part in parts.values()])]
+    return [Raw(chains, comments=comments)]
 
 
 def comma(cell: str) -> str:

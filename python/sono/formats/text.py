@@ -31,6 +31,7 @@ def read(text: str, name: str) -> list[Raw]:
     chains: list[Chain] = []
     rows: list[tuple[float, float, float]] = []
     lines: list[int] = []
+    comments: list[str] = []
     for number, line in enumerate((*text.split("\n"), ""), 1):  # the empty line ends the last component
         data = line.partition("#")[0].strip()
         if data:
@@ -42,12 +43,14 @@ def read(text: str, name: str) -> list[Raw]:
                 raise FormatError.at(name, number, columns.wrong(data)) from None
             rows.append((x, y, z))
             lines.append(number)
-        elif rows and not line.strip():
+        elif "#" in line:
+            comments.append(line.partition("#")[2].strip())
+        elif rows:
             chains.append(Chain(rows, lines))
             rows, lines = [], []
     if not chains:
         raise FormatError.at(name, 1, "the file holds no vertices; give rows of three numbers x y z")
-    return [Raw(chains)]
+    return [Raw(chains, comments=comments)]
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:

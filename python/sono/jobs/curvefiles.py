@@ -27,9 +27,8 @@ def measured(source: str) -> tuple[VertexFile, Measures]:
 
 def rope_in(path: str) -> tuple[VertexFile, Measures, Header]:
     """Read and measure a rope's file, and its header, likewise."""
-    name, data = formats.load(path)
-    (file,) = formats.parse(name, data)
-    return file, measures_of(file), ropefile.parse(formats.decoded(name, data))
+    file, measures = measured(path)
+    return file, measures, ropefile.parse("".join(f"# {line}\n" for line in file.comments))
 
 
 def measures_of(file: VertexFile) -> Measures:
@@ -67,8 +66,3 @@ def digest(file: VertexFile, *settings: Any) -> str:
     for component in file.components:
         found.update(component.tobytes() + b"end of component")
     return found.hexdigest()[:32]
-
-
-def header_of(path: str) -> Header:
-    """Read the header of a rope's file. Raises `FormatError`."""
-    return ropefile.parse(formats.decoded(*formats.load(path)))
