@@ -139,7 +139,7 @@ def test_what_fortran_does_not_write(word: str) -> None:
         parsed(f"{word} 0 0\n1 0 0\n0 1 0\n")
 
 
-@pytest.mark.parametrize("suffix", ["stl", "npy", "png", "pdb", "csv", "n480"])
+@pytest.mark.parametrize("suffix", ["stl", "png", "csv", "n480"])
 def test_a_suffix_of_no_format_is_not_written(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"k.{suffix}"
     with pytest.raises(FormatError, match=rf"k\.{suffix}: \.{suffix} is no format for vertices"):
@@ -346,8 +346,8 @@ def test_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_unknown_format_is_refused() -> None:
-    with pytest.raises(ValueError, match="unknown format 'obj'; the formats are: text, vect"):
-        formats.write("-", [], format="obj")
+    with pytest.raises(ValueError, match=r"unknown format 'stl'; the formats are: .*text, vect"):
+        formats.write("-", [], format="stl")
 
 
 def test_unwritable_files_are_named(tmp_path: Path) -> None:

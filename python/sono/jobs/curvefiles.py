@@ -11,7 +11,7 @@ from typing import Any
 from sono import formats
 from sono._core import CurveError
 from sono.curve import Measures, measure
-from sono.formats import FormatError, VertexFile, is_stream, ropefile
+from sono.formats import FormatError, VertexFile, is_stream, ropefile, unpacked
 from sono.formats.ropefile import Header
 
 KEPT_RESIDUAL = 1e-6
@@ -56,8 +56,9 @@ def free_name(output: str) -> str:
 
 def names_of_best(output: str) -> Iterator[str]:
     """Give the names beside `output` for unfinished results, one after the other."""
-    path = Path(output)
-    return (os.fspath(path.with_suffix(f".best{k}{path.suffix}")) for k in chain([""], count(2)))
+    path = Path(unpacked(output))
+    packed = output[len(unpacked(output)) :]
+    return (os.fspath(path.with_suffix(f".best{k}{path.suffix}{packed}")) for k in chain([""], count(2)))
 
 
 def digest(file: VertexFile, *settings: Any) -> str:
