@@ -40,7 +40,7 @@ def lists(curve: VertexFile) -> list[list[list[float]]]:
     return [component.tolist() for component in curve.components]
 
 
-@pytest.mark.parametrize("suffix", ["xyz", "vect"])
+@pytest.mark.parametrize("suffix", ["txt", "xyz", "vect", "obj", "json", "npz", "npy", "txt.gz"])
 @given(curve=st.lists(polygons, min_size=1, max_size=4), comments=comments)
 def test_round_trip_keeps_every_bit(
     suffix: str,
@@ -49,6 +49,7 @@ def test_round_trip_keeps_every_bit(
     comments: list[str],
 ) -> None:
     assume(not any(map(ends_meet, curve)))
+    assume(suffix != "npy" or len({len(component) for component in curve}) == 1)
     assume(not jumps(curve)[1])
     path = tmp_path_factory.getbasetemp() / f"curve.{suffix}"
     formats.write(path, curve, comments)

@@ -65,6 +65,7 @@ def test_standard_input_and_shards(frames: str, sono: Sono) -> None:
     assert sono("measure", "--", "-:3", input=content).stdout.splitlines()[1].startswith("stdin:3")
 
 
+@pytest.mark.slow
 def test_each_is_searched_for_by_itself(frames: str, sono: Sono) -> None:
     Path("list").write_text(f"{frames}\n")
     result = sono("search", "--list", "list", "--trials", "1", "--checkpoint", "c")

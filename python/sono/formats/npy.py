@@ -25,7 +25,7 @@ def array(data: bytes, name: str) -> NDArray[np.generic]:
     """Load an array of numbers or texts. Raises `FormatError`."""
     try:
         found = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
-    except (ValueError, EOFError, OSError, OverflowError, MemoryError, RecursionError) as error:
+    except Exception as error:  # the header is parsed as Python is, and fails in as many ways
         why = "holds Python objects" if "Object arrays" in str(error) else "is no whole NPY file"
         raise FormatError.at(name, 1, f"{why}; save the vertices as an array of numbers") from error
     return np.asarray(found)

@@ -1,4 +1,4 @@
-"""NumPy's NPZ: a ZIP archive of NPY arrays, the components in their order, and `comments`, if any, as texts."""
+"""NumPy's NPZ: a ZIP archive of NPY arrays, the components in their order, and `comments`, as texts."""
 
 import io
 import zipfile
