@@ -83,6 +83,13 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     help="Shapes to find with the method both; the shortest is polished. The first 4 will do where they "
     "agree, or are longer than 150.",
 )
+@click.option(
+    "--start",
+    type=click.Choice(["known", "drawn"]),
+    default="known",
+    show_default=True,
+    help="For a NAME: polish the shape that the atlas has of it, if any, or tighten the loose start.",
+)
 @options.output(
     "File or folder/ for the vertices, - for standard output.  [default: NAME.nN.txt, or NAME.dlDL.txt, here]"
 )
@@ -141,6 +148,7 @@ def _work(
     *,
     method: "Method",
     trials: int,
+    start: str,
     output: str | None,
     contacts: str | None,
     force: bool,
@@ -160,7 +168,7 @@ def _work(
     if output == contacts == "-":
         raise click.UsageError("standard output cannot hold both vertices and contacts; name a file for one")
     same: dict[str, Any] = {"settings": _settings(seed, pairs), "method": method, "trials": trials}
-    same |= {"time_limit": time_limit, "resume": resume}
+    same |= {"time_limit": time_limit, "resume": resume, "known": start == "known"}
     work = [
         Job(source, name, outputs, **_beside(name, outputs, contacts, checkpoint, len(sources)), **same)
         for source, name, outputs in _plan(sources, targets, output, fresh)
