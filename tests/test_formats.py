@@ -114,7 +114,7 @@ def test_single_precision_repeats_too() -> None:
 def test_a_short_closing_edge_is_an_edge(share: float) -> None:
     knot = np.vstack([TREFOIL, TREFOIL[0] + share * (TREFOIL[-1] - TREFOIL[0])])
     assert len(parse(text, text.write([knot], []), "k").components[0]) == 41
-    with pytest.raises(FormatError, match="a polyline is open"):
+    with pytest.raises(FormatError, match="the chain is open"):
         parse(vect, open_vect(knot), "k")
 
 
@@ -268,7 +268,8 @@ def test_vect_may_repeat_the_first_vertex() -> None:
         (f"VECT\n1 3 0\n-3\n0\n{ROWS}0.5\n", "8: '0.5' is left over; correct the counts"),
         (
             f"VECT\n1 3 0\n3\n0\n{ROWS}",
-            "3: a polyline is open; closed polylines have a negative count: write -3",
+            "7: the chain is open: it ends here and began on line 5; --close direct joins its ends by an "
+            "edge, --close sphere by way of a sphere round it",
         ),
         (f"VECT\n2 3 0\n-3\n0\n0 0\n{ROWS}", "4: a polyline has no vertices; give at least 3"),
         (

@@ -16,6 +16,7 @@ from typing import Any, TypeAlias, cast
 from sono import _core, curve, formats, starts
 from sono.curve import Curve as Curve
 from sono.curve import CurveLike, Forces, Measures, as_components
+from sono.formats.closing import WAYS, Close
 from sono.jobs.workers import Threads
 from sono.records import Record
 from sono.searching.minima import Minimum, merged
@@ -39,11 +40,12 @@ def unseen(progress: Progress) -> None:
     """Watch nothing."""
 
 
-def read(path: str | os.PathLike[str]) -> Curve:
-    """Read a curve from a file: rows of x y z, a blank line between components, or Geomview VECT.
+def read(path: str | os.PathLike[str], close: Close | None = None) -> Curve:
+    """Read a curve from a file; "FILE:KEY" is one of a file that holds several, such as "traj.xyz:12".
 
-    A last vertex that repeats the first is dropped; lengths keep the file's unit. Raises `FormatError`, a
-    `ValueError` that names file and line.
+    Open chains are an error unless `close` says how their ends are joined: "direct" by an edge, "sphere" by
+    way of a sphere round the chain. A last vertex that repeats the first is dropped; lengths keep the file's
+    unit. Raises `FormatError`, a `ValueError` that names file and line.
 
     >>> import tempfile, pathlib
     >>> path = pathlib.Path(tempfile.mkdtemp(), "square.txt")
@@ -51,7 +53,21 @@ def read(path: str | os.PathLike[str]) -> Curve:
     >>> read(path)
     Curve(4 vertices)
     """
-    return Curve(formats.read(path).components)
+    return Curve(formats.read(path, _way(close)).components)
+
+
+def read_all(path: str | os.PathLike[str], close: Close | None = None) -> dict[str, Curve]:
+    """Read all curves of a file, such as the frames of a simulation, by their keys.
+
+    The key of an only curve may be empty. As for `read`, whose errors it raises.
+
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "square.txt")
+    >>> write(path, [[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
+    >>> read_all(path)
+    {'': Curve(4 vertices)}
+    """
+    return {file.key: Curve(file.components) for file in formats.read_all(path, _way(close))}
 
 
 def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[str] = ()) -> None:
@@ -263,6 +279,13 @@ def _known(name: str) -> list[Any]:
         starts.start(name)  # says what is wrong with it, if it is no name at all
         raise ValueError(f"the atlas has no shape of {name!r}")
     return list(shape)
+
+
+def _way(close: Close | None) -> Close | None:
+    """Refuse another way to close chains."""
+    if close not in (None, *WAYS):
+        raise ValueError(f"close = {close!r}: give {' or '.join(map(repr, WAYS))}")
+    return close
 
 
 def _components(vertices: Rope) -> list[Any]:

@@ -71,7 +71,7 @@ def command(
         work = [AtlasJob.of(atlas, source, searches if update else None) for source in names]
         paths = [path for job in work if job.search for path in job.search.files()]
         paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
-        places.prepare(paths, [], False)
+        places.prepare(paths, False)
         code = Batch(shown.table(), shown.quiet).run(work, workers.count)
     if update and code < 128:
         code = max(code, _refresh(atlas, shown))

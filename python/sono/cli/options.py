@@ -5,7 +5,7 @@ import io
 import math
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
@@ -16,6 +16,7 @@ from sono.cli.streams import complain as complain
 from sono.tables import TableWriter
 
 if TYPE_CHECKING:
+    from sono.formats import Close
     from sono.jobs.workers import Cluster, Threads
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -30,7 +31,7 @@ def files(function: Function) -> Function:
 
 
 def knots(function: Function) -> Function:
-    """Files or names of knots, as arguments and from `--list`, of which `--shard` takes a part."""
+    """Files or names of knots, as arguments and from `--list`: curves, which `--shard` takes part of."""
 
     @click.argument("arguments", metavar="[FILE|NAME]...", nargs=-1)
     @click.option(
@@ -46,22 +47,26 @@ def knots(function: Function) -> Function:
         callback=_shard,
         help="Take only every N-th of them, beginning with the I-th: for arrays of jobs.",
     )
+    @close
     @functools.wraps(function)
     def command(
-        arguments: tuple[str, ...], list_file: str | None, shard: slice | None, **more: object
+        *, arguments: tuple[str, ...], list_file: str | None, shard: slice, close: "Close", **more: object
     ) -> object:
-        sources = [*arguments, *(_listed(list_file) if list_file else [])]
-        if not sources:
+        from sono.jobs.sources import curves  # here, since numpy would make --help wait
+
+        given = [*arguments, *(_listed(list_file) if list_file else [])]
+        if not given:
             raise click.UsageError("give a FILE or the NAME of a knot, or a --list of them")
-        if not sources[shard or slice(None)]:
+        sources = [curve for source in given for curve in curves(source, close)]
+        if not sources[shard]:
             complain("nothing to do: there are fewer knots than shards")
             return None
-        return function(sources=sources[shard or slice(None)], **more)
+        return function(sources=sources[shard], **more)
 
     return cast("Function", command)
 
 
-def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> slice | None:
+def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> slice:
     match = re.fullmatch(r"(\d{1,15})/(\d{1,15})", value or "1/1")
     if not match or not 1 <= int(match[1]) <= int(match[2]):
         raise click.BadParameter(f"{value!r}: give I/N with I from 1 to N, such as 3/20")
@@ -77,11 +82,20 @@ def _listed(path: str) -> list[str]:
         raise click.UsageError(f"{path}: cannot be read: {error.strerror}") from error
 
 
-def tell_of_shadows(sources: Sequence[str], shown: "Shown") -> None:
+def close(function: Function) -> Function:
+    """`--close`."""
+    return click.option(
+        "--close",
+        type=click.Choice(["direct", "sphere"]),
+        help="Close open chains, by an edge between the ends or by way of a sphere round the chain.",
+    )(function)
+
+
+def tell_of_shadows(sources: Iterable[object], shown: "Shown") -> None:
     """Say which sources are files called like a knot."""
     from sono.jobs.sources import shadowed  # here, since numpy would make --help wait
 
-    for source in filter(shadowed, sources):
+    for source in filter(shadowed, map(str, sources)):
         why = "is a file here, which is taken, and not the knot of this name"
         shown.tell(f"{source}: {why}; `sono start {source}` draws that")
 

@@ -19,23 +19,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import text, vect
-from sono.formats.files import atomic, decoded, is_stream, load, part_of, save
+from sono.formats.closing import Close
+from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
 
 __all__ = [
     "READERS",
     "SUFFIXES",
     "WRITERS",
+    "Close",
     "FormatError",
+    "Raw",
     "VertexFile",
     "atomic",
     "by_suffix",
-    "chosen",
     "decoded",
     "is_stream",
     "load",
+    "may_hold_several",
     "parse",
     "part_of",
+    "raws",
     "read",
     "read_all",
     "save",
@@ -66,6 +70,9 @@ READERS: dict[str, Reader] = {
     "text": text,  # the last one, as it takes any text for its own
 }
 
+SEVERAL: set[str] = set()
+"""The formats whose files may hold several curves, so that a batch looks into them before it begins."""
+
 WRITERS: dict[str, Writer] = {"vect": vect, "text": text}
 
 PLAIN = "text"
@@ -75,47 +82,81 @@ SUFFIXES = {"": "text", ".txt": "text", ".xyz": "text", ".dat": "text", ".vect":
 """The format of a file by its suffix."""
 
 
-def read(source: str | os.PathLike[str]) -> VertexFile:
+def read(source: str | os.PathLike[str], close: Close | None = None) -> VertexFile:
     """Read a curve of one or more components from a file, or from standard input when `source` is "-".
 
     Of a file that holds several curves, "FILE:KEY" reads one. Every component has at least three vertices,
-    finite coordinates and no two equal neighbours; a last vertex that repeats the first is dropped. Lengths
-    keep the file's unit. Raises `FormatError`.
+    finite coordinates and no two equal neighbours; a last vertex that repeats the first is dropped, and an
+    open chain is an error unless `close` says how it is closed. Lengths keep the file's unit. Raises
+    `FormatError`.
+    """
+    name, (raw, *others) = raws(source)
+    if others:
+        keys = _listed([raw, *others])
+        raise FormatError(f"{name}: holds {1 + len(others)} curves; {name}:{raw.key} is one, of: {keys}")
+    return VertexFile.checked(name, raw, close)
+
+
+def read_all(source: str | os.PathLike[str], close: Close | None = None) -> list[VertexFile]:
+    """Read all curves of a file, or the one of "FILE:KEY", likewise."""
+    name, found = raws(source)
+    return [VertexFile.checked(name, raw, close) for raw in found]
+
+
+def raws(source: str | os.PathLike[str]) -> tuple[str, Sequence[Raw]]:
+    """Give a file's name for messages, and its curves, or that of "FILE:KEY", not yet checked.
+
+    Raises `FormatError`.
     """
     path, key = split(os.fspath(source))
-    return chosen(path, parse(*load(path)), key)
-
-
-def chosen(name: str, curves: Sequence[VertexFile], key: str | None) -> VertexFile:
-    """Return the curve of a file that has this key, or the only one. Raises `FormatError`."""
-    found = [curve for curve in curves if key in (None, curve.key)]
-    if len(found) == 1:
-        return found[0]
-    keys = ", ".join(curve.key for curve in curves[:SHOWN]) + (" and so on" if len(curves) > SHOWN else "")
+    name, data = load(path)
+    found = _unchecked(name, data)
     if key is None:
-        raise FormatError(f"{name}: holds {len(curves)} curves; {name}:{curves[0].key} is one, of: {keys}")
-    raise FormatError(f"{name}: holds no curve {shown(key)}; there are: {keys or 'no others'}")
+        return name, found
+    if chosen := [raw for raw in found if raw.key == key]:
+        return name, chosen
+    keys = _listed(found) or "no others"
+    raise FormatError(f"{name}: holds no curve {shown(key)}; there are: {keys}")
 
 
-def read_all(source: str | os.PathLike[str]) -> list[VertexFile]:
-    """Read all curves of a file, or the one of "FILE:KEY", likewise."""
-    path, key = split(os.fspath(source))
-    return parse(*load(path)) if key is None else [read(source)]
+def _listed(curves: Sequence[Raw]) -> str:
+    return ", ".join(raw.key for raw in curves[:SHOWN]) + (" and so on" if len(curves) > SHOWN else "")
 
 
 def split(source: str) -> tuple[str, str | None]:
     """Split "FILE:KEY" into the file and the key of one of its curves; without a key it is None."""
     colons = [] if os.path.exists(source) else [match.start() for match in re.finditer(":", source)]
-    cut = next((colon for colon in colons if os.path.isfile(source[:colon])), None)
+    cut = next((at for at in colons if os.path.isfile(source[:at]) or source[:at] == "-"), None)
     return (source, None) if cut is None else (source[:cut], source[cut + 1 :])
 
 
-def parse(name: str, data: bytes) -> list[VertexFile]:
-    """Read the bytes of a file, likewise; `name` is for messages, and its suffix counts."""
-    content = decoded(name, data)
+def may_hold_several(path: str) -> bool:
+    """Tell by the first of its bytes whether a file is of a format that may hold several curves.
+
+    What cannot be read twice may, and what cannot be read.
+    """
+    try:
+        return is_stream(path) or _format_of(path, head(path)) in SEVERAL
+    except FormatError:
+        return True
+
+
+def _format_of(name: str, data: bytes) -> str:
+    """Tell which format a file of this name has that begins like this. Raises `FormatError`."""
     own = SUFFIXES.get(_suffix(name), PLAIN)
-    known = own if own != PLAIN else next(key for key in READERS if READERS[key].recognises(content))
-    return [VertexFile.checked(name, raw) for raw in READERS[known].read(content, name)]
+    if own != PLAIN:
+        return own
+    content = decoded(name, data)
+    return next(key for key in READERS if READERS[key].recognises(content))
+
+
+def parse(name: str, data: bytes, close: Close | None = None) -> list[VertexFile]:
+    """Read all curves in the bytes of a file, likewise; `name` is for messages, and its suffix counts."""
+    return [VertexFile.checked(name, raw, close) for raw in _unchecked(name, data)]
+
+
+def _unchecked(name: str, data: bytes) -> Sequence[Raw]:
+    return READERS[_format_of(name, data)].read(decoded(name, data), name)
 
 
 def write(

@@ -16,6 +16,9 @@ from sono.formats.vertices import FormatError
 GZIP = b"\x1f\x8b"
 """What a gzip file begins with."""
 
+HEAD = 1 << 14
+"""Bytes that are looked at to tell what a file is."""
+
 
 def load(source: str | os.PathLike[str]) -> tuple[str, bytes]:
     """Give the name for messages and the bytes of a file, or of standard input for "-".
@@ -33,6 +36,18 @@ def load(source: str | os.PathLike[str]) -> tuple[str, bytes]:
         return name, gzip.decompress(data)
     except (OSError, EOFError, zlib.error) as error:
         raise FormatError(f"{name}: is no whole gzip file: {error}; pack it again") from error
+
+
+def head(path: str) -> bytes:
+    """Give the first whole lines of a file. Raises `FormatError` when it cannot be read."""
+    try:
+        with open(path, "rb") as stream:
+            packed = stream.read(len(GZIP)) == GZIP
+        with gzip.open(path) if packed else open(path, "rb") as stream:
+            data: bytes = stream.read(HEAD)
+    except (OSError, EOFError, zlib.error) as error:
+        raise FormatError(f"{path}: cannot be read: {error}") from error
+    return data[: data.rfind(b"\n") + 1] or data
 
 
 def decoded(name: str, data: bytes) -> str:

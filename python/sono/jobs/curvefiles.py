@@ -22,17 +22,18 @@ contacts just out of touch, which at mu = 1e-11 bear that much, are left out."""
 def measured(source: str) -> tuple[VertexFile, Measures]:
     """Read and measure a curve file. Raises `FormatError` naming file and line."""
     file = formats.read(source)
-    return file, _measures(file)
+    return file, measures_of(file)
 
 
 def rope_in(path: str) -> tuple[VertexFile, Measures, Header]:
     """Read and measure a rope's file, and its header, likewise."""
     name, data = formats.load(path)
     (file,) = formats.parse(name, data)
-    return file, _measures(file), ropefile.parse(formats.decoded(name, data))
+    return file, measures_of(file), ropefile.parse(formats.decoded(name, data))
 
 
-def _measures(file: VertexFile) -> Measures:
+def measures_of(file: VertexFile) -> Measures:
+    """Measure a curve that was read, likewise."""
     try:
         return measure(file.components)
     except CurveError as error:

@@ -9,9 +9,9 @@ from sono import starts
 from sono.curve import Components, Measures
 from sono.formats import VertexFile, is_stream
 from sono.formats.ropefile import STUCK
-from sono.jobs import sources
 from sono.jobs.curvefiles import digest
 from sono.jobs.result import Result, as_row
+from sono.jobs.sources import Source
 from sono.tables import Row
 from sono.tightening import Method
 from sono.tightening.settings import TRIALS, default_settings
@@ -20,7 +20,7 @@ from sono.tightening.targets import Target
 
 @dataclass(frozen=True)
 class Order:
-    """Tighten the curve in `source` ("-" is standard input) to each target that is in `outputs`.
+    """Tighten the curve of `source` to each target that is in `outputs`.
 
     `name` is the curve's name in tables. `outputs` says where the vertices for each go, and `forces` where
     those between them, if they are wanted; "-" is standard output. `time_limit` is in seconds. `checkpoint`
@@ -29,7 +29,7 @@ class Order:
     the atlas has of it.
     """
 
-    source: str
+    source: Source
     name: str
     outputs: dict[Target, str]
     settings: dict[str, Any]
@@ -43,8 +43,8 @@ class Order:
 
     def shape(self) -> Components | None:
         """Return the shape of the atlas that the rope begins with, if there is one."""
-        wanted = self.known and self.method == "both" and sources.is_name(self.source)
-        return starts.known(self.source) if wanted else None
+        knot = self.source.knot if self.known and self.method == "both" else None
+        return starts.known(knot) if knot else None
 
     def files(self) -> list[str]:
         """Return the files that the job writes."""

@@ -1,22 +1,28 @@
-"""Where a curve comes from: a file, standard input, or the name of a knot."""
+"""Where a curve comes from: a file, one curve of a file, standard input, or the name of a knot."""
 
 import os
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
+from pathlib import PurePath
+from typing import Self
 
 import numpy as np
 
 from sono import formats, starts
-from sono.formats import FormatError, VertexFile
+from sono.formats import Close, FormatError, Raw, VertexFile
 
 _OF_FILES = "./\\"
 """What no name of a knot has."""
+
+_UNSAFE = re.compile(r"[^\w+-]")
+"""What of a key is not taken into the name of a file."""
 
 
 def is_name(source: str) -> bool:
     """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
     file = formats.split(source)[0]
     is_file = os.path.exists(file) and not os.path.isdir(file)
-    return source != "-" and not is_file and not set(_OF_FILES) & set(source)
+    return file != "-" and not is_file and not set(_OF_FILES) & set(source)
 
 
 def shadowed(source: str) -> bool:
@@ -24,30 +30,91 @@ def shadowed(source: str) -> bool:
     return os.path.isfile(source) and not set(_OF_FILES) & set(source) and starts.knows(source)
 
 
-@dataclass(frozen=True)
-class Content:
-    """What is in a file, whose curve has this key if it holds several."""
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A curve to work on, as it was `given`: a file, "FILE:KEY", "-" for standard input, or a knot's name.
 
-    name: str
-    data: bytes
-    key: str | None
+    `close` says how open chains are closed. `found` is the curve, or what is wrong with it, if it has been
+    looked at already.
+    """
+
+    given: str
+    close: Close | None = None
+    found: VertexFile | FormatError | None = None
+
+    def __str__(self) -> str:
+        """Give it as the user does."""
+        return self.given
+
+    @property
+    def name(self) -> str:
+        """What the curve is called in tables: its file's name without folder and suffix, and its key."""
+        stem, key = self._parts()
+        return stem if key is None else f"{stem}:{key}"
+
+    @property
+    def stem(self) -> str:
+        """What the names of its files begin with: a colon, and much else that a key may have, cannot be."""
+        stem, key = self._parts()
+        return stem if key is None else f"{stem}.{_UNSAFE.sub('_', key)}"
+
+    def _parts(self) -> tuple[str, str | None]:
+        path, key = formats.split(self.given)
+        return ("stdin" if path == "-" else PurePath(path.removesuffix(".gz")).stem), key
+
+    @property
+    def piped(self) -> bool:
+        """Whether it comes from standard input."""
+        return formats.split(self.given)[0] == "-"
+
+    @property
+    def knot(self) -> str | None:
+        """The name of the knot, if it is one."""
+        return self.given if is_name(self.given) else None
+
+    def read(self) -> VertexFile:
+        """Read the curve, or draw the knot. Raises `FormatError`."""
+        if isinstance(self.found, FormatError):
+            raise self.found
+        if self.found:
+            return self.found
+        return _drawn(self.given) if is_name(self.given) else formats.read(self.given, self.close)
+
+    def looked_at(self) -> Self:
+        """Return it with its curve, which then need not be read again, or with what is wrong with it."""
+        try:
+            return replace(self, found=self.read())
+        except FormatError as error:
+            return replace(self, found=error)
 
 
-def with_content(source: str) -> tuple[Content | None, VertexFile]:
-    """Read a source, likewise, and if it is a file give what it holds. Raises `FormatError`."""
-    if is_name(source):
-        return None, read(source)
-    path, key = formats.split(source)
-    content = Content(*formats.load(path), key)
-    return content, formats.chosen(content.name, formats.parse(content.name, content.data), key)
+def curves(given: str, close: Close | None = None) -> list[Source]:
+    """Give the curves of a source: several, each called FILE:KEY, if it is a file that holds several.
 
-
-def read(source: str) -> VertexFile:
-    """Read a curve file, or draw the knot of this name. Raises `FormatError`."""
-    if not is_name(source):
-        return formats.read(source)
+    Only such files are read here, and standard input.
+    """
+    if is_name(given) or not formats.may_hold_several(formats.split(given)[0]):
+        return [Source(given, close)]
     try:
-        curve = starts.start(source)
+        name, found = formats.raws(given)
+    except FormatError as error:
+        return [Source(given, close, error)]
+    several = len(found) > 1
+    return [
+        Source(f"{given}:{raw.key}" if several else given, close, _checked(name, raw, close)) for raw in found
+    ]
+
+
+def _checked(name: str, raw: Raw, close: Close | None) -> VertexFile | FormatError:
+    try:
+        return VertexFile.checked(name, raw, close)
+    except FormatError as error:
+        return error
+
+
+def _drawn(knot: str) -> VertexFile:
+    try:
+        curve = starts.start(knot)
     except ValueError as error:
-        raise FormatError(f"{source}: no such file, nor a knot: {error}") from error
-    return VertexFile(source, list(curve), [np.arange(len(component)) + 1 for component in curve])
+        raise FormatError(f"{knot}: no such file, nor a knot: {error}") from error
+    return VertexFile(knot, list(curve), [np.arange(len(component)) + 1 for component in curve])
