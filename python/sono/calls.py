@@ -94,17 +94,22 @@ def names() -> list[str]:
     return starts.names()
 
 
-def start(name: str, variant: int = 0) -> Curve:
+def start(name: str, variant: int = 0, *, known: bool = False) -> Curve:
     """Return a loose conformation of the knot of this name, in units of about one rope radius.
 
-    Each `variant` is another conformation of the same type: see `sono start --help`. Raises `ValueError`,
-    with the nearest known name, for one that is not known.
+    Each `variant` is another conformation of the same type: see `sono start --help`. If `known`, it is the
+    shape that the atlas has of the knot instead, tight at R_s = 1 but for its coarse edges of 0.45 and its
+    coordinates in thousandths. Raises `ValueError`, with the nearest known name, for one that is not known.
 
-    >>> start("3_1"), len(start("Hopf"))
-    (Curve(69 vertices), 2)
+    >>> start("3_1"), len(start("Hopf")), start("3_1", known=True)
+    (Curve(69 vertices), 2, Curve(73 vertices))
     """
     if not isinstance(name, str):
         raise ValueError(f"{name!r} is no name of a knot")
+    if known:
+        if variant:
+            raise ValueError(f"variant = {variant}: the atlas has one shape of a knot")
+        return Curve(_known(name))
     return Curve(starts.start(name, whole("variant", variant, -(10**12))))
 
 
@@ -141,6 +146,7 @@ def tighten(
     method: Method = "both",
     trials: int = TRIALS,
     seed: int | None = None,
+    known: bool = True,
     time_limit: float | None = None,
     settings: Settings | Changes | None = None,
     watch: Callable[[Progress], object] = unseen,
@@ -150,7 +156,8 @@ def tighten(
     The rope has `n` vertices, all components together, 480 by default; or its edges are `dl` radii long, at
     most 1, as far as n is a whole number. With the method "both" SONO finds shapes in up to `trials` trials
     and the polish makes the best one exact; "sono" and "polish" do without the other. `settings` are the
-    parameters of both engines, or some of them by name; the seed is one.
+    parameters of both engines, or some of them by name; the seed is one. A knot by its name begins with the
+    shape that the atlas has of it, without any trials; if `known` is False, with the loose one of `start`.
 
     `watch` is called about ten times a second. If it returns True, and after `time_limit` seconds, the best
     state so far is returned, with `converged` False; what it raises ends the run and passes through.
@@ -167,7 +174,8 @@ def tighten(
         raise ValueError("give the number n of vertices or the length dl of edges, not both")
     target = float(dl) if dl is not None else whole("n", DEFAULT_N if n is None else n)
     curve, changes = _components(vertices), changed(settings, seed)
-    run = Run(curve, [target], changes, method, whole("trials", trials))
+    shape = starts.known(vertices) if known and isinstance(vertices, str) else None
+    run = Run(curve, [target], changes, method, whole("trials", trials), shape)
     return best_of(run, math.inf if time_limit is None else time_limit, watch)
 
 
@@ -263,6 +271,14 @@ def compare(rope: Rope, knot: str) -> Comparison:
     row = published.extrapolated({"knot": knot, "n": measures.n, "l_a": measures.l_a, "l_c": measures.l_c})
     found: Any = published.beside(row, published.table())
     return Comparison(*(found.get(field.name) for field in fields(Comparison)))
+
+
+def _known(name: str) -> list[Any]:
+    """Return the atlas's shape of a knot. Raises `ValueError` if there is none."""
+    if (shape := starts.known(name)) is None:
+        starts.start(name)  # says what is wrong with it, if it is no name at all
+        raise ValueError(f"the atlas has no shape of {name!r}")
+    return list(shape)
 
 
 def _way(close: Close | None) -> Close | None:

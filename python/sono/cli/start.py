@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     metavar="SEED",
     help="Entangle the curve, isotopically.",
 )
+@click.option("--known", is_flag=True, help="The shape that the atlas has of it, on coarse beads.")
 @click.option("--list", "list_names", is_flag=True, help="List the names that are built in.")
 @click.option("-o", "--output", default="-", show_default=True, metavar="FILE", help="Where to write it.")
 @click.option("--force", is_flag=True, help="Overwrite FILE.")
@@ -36,6 +37,7 @@ def command(
     word: str | None,
     variant: int,
     scramble_seed: int | None,
+    known: bool,
     list_names: bool,
     output: str,
     force: bool,
@@ -49,6 +51,7 @@ def command(
     # Imported here, since numpy would make --help wait.
     from sono import formats, starts
     from sono.cli import options, places
+    from sono.starts.scramble import scramble
 
     if list_names:
         if name or word or output != "-":
@@ -59,11 +62,16 @@ def command(
         raise click.UsageError("give either a NAME or a --braid word")
     if word is not None and variant < 0:
         raise click.UsageError(f"--variant {variant}: a braid word has no planar diagram; give 0 or more")
+    if known and (variant or word is not None):
+        raise click.UsageError("--known is the one shape of a NAME in the atlas, without a --variant")
     places.check_suffix(output)
     if output != "-" and os.path.exists(output) and not force:
         raise click.UsageError(f"{output} exists; --force overwrites it")
     try:
-        title, curve = _drawn(name, word, variant, scramble_seed)
+        title, curve = _drawn(name, word, variant, known)
+        if scramble_seed is not None:
+            title += f", scrambled with seed {scramble_seed}"
+            curve = scramble(curve, scramble_seed)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
     try:
@@ -73,10 +81,9 @@ def command(
         sys.exit(1)
 
 
-def _drawn(
-    name: str | None, word: str | None, variant: int, scramble_seed: int | None
-) -> "tuple[str, Components]":
+def _drawn(name: str | None, word: str | None, variant: int, known: bool) -> "tuple[str, Components]":
     """Draw what was asked for, and say what it is. Raises `ValueError`."""
+    import sono
     from sono import starts
     from sono.starts.braids import braid
     from sono.starts.scramble import scramble
@@ -87,11 +94,9 @@ def _drawn(
         curve = scramble(curve, variant) if variant else curve
     else:
         title = name or ""
-        curve = starts.start(title, variant)
+        curve = sono.start(title, known=True) if known else starts.start(title, variant)
+    title += ", the shape of the atlas" if known else ""
     title += f", variant {variant}" if variant else ""
-    if scramble_seed is not None:
-        title += f", scrambled with seed {scramble_seed}"
-        curve = scramble(curve, scramble_seed)
     return title, curve
 
 

@@ -84,6 +84,13 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     help="Shapes to find with the method both; the shortest is polished. The first 4 will do where they "
     "agree, or are longer than 150.",
 )
+@click.option(
+    "--start",
+    type=click.Choice(["known", "drawn"]),
+    default="known",
+    show_default=True,
+    help="For a NAME: polish the shape that the atlas has of it, if any, or tighten the loose start.",
+)
 @options.output(
     "File or folder/ for the vertices, - for standard output.  [default: NAME.nN.txt, or NAME.dlDL.txt, here]"
 )
@@ -142,6 +149,7 @@ def _work(
     *,
     method: "Method",
     trials: int,
+    start: str,
     output: str | None,
     contacts: str | None,
     force: bool,
@@ -161,7 +169,7 @@ def _work(
     if output == contacts == "-":
         raise click.UsageError("standard output cannot hold both vertices and contacts; name a file for one")
     same: dict[str, Any] = {"settings": _settings(seed, pairs), "method": method, "trials": trials}
-    same |= {"time_limit": time_limit, "resume": resume}
+    same |= {"time_limit": time_limit, "resume": resume, "known": start == "known"}
     work = [
         Job(
             source,

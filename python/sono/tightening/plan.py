@@ -3,7 +3,7 @@
 First a shape is found: the stages of several trials are "collapse", "anneal" and "trial". From the best shape
 "climb" rungs, each with twice the vertices of the one before, lead to the last, a "polish". With the method
 "sono" one curve is collapsed, and rungs "anneal", "reanneal" and "settle" of SONO come in place of the
-polished ones; with "polish" there is no shape to be found.
+polished ones; with "polish" there is no shape to be found, nor where one is known.
 """
 
 import json
@@ -43,6 +43,9 @@ HOPELESS = 1.3
 """A run whose first trial needs so many times the vertices asked for makes no other: what trials from one
 curve need differs by a few percent as a rule, and by a sixth at most as far as is known."""
 
+KNOWN = 0.5
+"""A rope whose edges are at most so long, in radii, is polished from a shape that is known; for one of longer
+edges other shapes may be better."""
 
 CLIMBS = 3
 """Climbs that are made once more for a target that is an edge length."""
@@ -55,7 +58,8 @@ class Plan:
     `curve` is what the next rung begins with, and `start` the curve of all trials, which may have been
     `loosened`. While a shape is looked for there is a `trial`, and `rungs` are empty. `shape` is the best of
     those found; `shapes` has the length of each, and `failed` says why other trials came to nothing. `climbs`
-    counts those that were made once more for the sake of the edges.
+    counts those that were made once more for the sake of the edges. `known` is a shape of radius 1 to climb
+    from instead, where edges are short enough for it, and `from_known` tells that the rope comes from there.
     """
 
     targets: list[Target]
@@ -71,12 +75,16 @@ class Plan:
     shapes: list[float] = field(default_factory=list)
     failed: list[str] = field(default_factory=list)
     climbs: int = 0
+    known: Components | None = None
+    from_known: bool = False
 
     def __post_init__(self) -> None:
         """Begin with the first trial, or with the climb."""
         self.start = self.start or self.curve
         if self.targets and not (self.trial or self.rungs):
-            if self.method == "polish":
+            if self._knows_enough():
+                self._climb_from_known()
+            elif self.method == "polish":
                 self._climb()
             else:
                 self._try_again()
@@ -171,6 +179,10 @@ class Plan:
 
     def fail(self, error: Error, needed: float) -> None:
         """Do without the trial that failed, and would have `needed` so many vertices; or raise its error."""
+        if self.from_known:
+            self.known, self.from_known = None, False
+            self._try_again()
+            return
         hopeless = not self.shapes and needed > HOPELESS * self.n
         if self.method != "both" or not self.trial or hopeless:
             raise error
@@ -187,7 +199,9 @@ class Plan:
             return
         measures = measure(self.curve)
         edge = measures.l_p / (measures.n * measures.r_s)
-        if self.method == "sono" and self.shape:
+        if self._knows_enough() and not (self.from_known and reached):
+            self._climb_from_known()
+        elif self.method == "sono" and self.shape:
             if reached and edge < FINE:
                 self._climb()
             else:
@@ -200,6 +214,20 @@ class Plan:
         else:  # what suits so few beads may not suit more of them
             self.shape, self.shapes, self.failed = None, [], []
             self._try_again()
+
+    def _knows_enough(self) -> bool:
+        """Tell whether a shape is known that suits edges as short as those of the first target."""
+        if self.known is None or self.method != "both":
+            return False
+        length = measure(self.known).l_p
+        return length <= KNOWN * aimed(self.targets[0], length)
+
+    def _climb_from_known(self) -> None:
+        """Plan the climb from the shape that is known."""
+        assert self.known is not None
+        self.curve, self.from_known = self.known, True
+        self.shape, self.shapes, self.failed = None, [], []
+        self._climb()
 
     def _next_trial(self) -> None:
         """Plan another trial, or, where there were enough, the climb from the best shape."""
@@ -254,7 +282,7 @@ class Plan:
         self.trial, self.rungs = None, [*((between, level) for level in levels), (last, n)]
 
 
-_CURVES = ("curve", "start", "shape")
+_CURVES = ("curve", "start", "shape", "known")
 
 _CLIMB = {"both": ("climb", "polish"), "polish": ("climb", "polish"), "sono": ("settle", "settle")}
 
