@@ -101,12 +101,16 @@ def put(data: bytes, word: bytes) -> bytes:
     return data[:start] + word + data[end:]
 
 
+CURE = "(; |: | should | which )"
+"""What stands before the cure."""
+
+
 def complaint(path: Path, data: bytes) -> str | None:
     """Say what is wrong with the message of a damaged file, if it has one."""
     try:
         parsed(path, data)
     except FormatError as error:
-        clear = re.match(rf"{re.escape(path.name)}(\[\w+\])?:\d+: .+; .+$", str(error))
+        clear = re.match(rf"{re.escape(path.name)}(\[\w+\])?:\d+: .+{CURE}.+$", str(error))
         return None if clear and str(error).isprintable() else str(error)
     return None
 
