@@ -47,6 +47,7 @@ def lists(name: str, content: str | bytes) -> list[Any]:
         V.replace("\n", " 1.0 0.5 0.5 0.5\n") + "l 1 2 3 4 1\n",
         V,
         V.replace(" ", "\t"),
+        f"{V}l 1 2 \\\n3 4 \\\n1\n",
     ],
 )
 def test_obj(content: str) -> None:

@@ -29,8 +29,11 @@ def read(text: str, name: str) -> list[Raw]:
     lines: list[int] = []
     net = _Net()
     faces = False
+    begun = ""
     for number, line in enumerate(text.split("\n"), 1):
-        word, *cells = line.partition("#")[0].split() or [""]
+        line = begun + line.partition("#")[0].rstrip()
+        begun = line[:-1] + " " if line.endswith("\\") else ""  # it goes on
+        word, *cells = ("" if begun else line).split() or [""]
         try:
             if word == "v":
                 rows.append(_vertex(cells))

@@ -19,7 +19,8 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.columns import Layout, Parts
+from sono.formats.columns import Parts
+from sono.formats.layouts import Layout
 from sono.formats.vertices import Chain, FormatError, Raw, shown
 
 _COUNT = re.compile(r"\s*\d+\s*(\n|$)")
