@@ -5,9 +5,9 @@
     2  -0.5 1  0             or semicolons. A column called chain, component, molecule, ring or strand tells
                              the components apart; the one called id or index must go up.
 
-Without a header, even one behind a #, the last three columns are the coordinates, and what is before them must
-be an index that goes up by one, or a word such as an element. An index may start again after a blank line only,
-which here too begins a new component.
+Without a header, even one behind a #, the last three columns are the coordinates, and what is before them
+must be an index that goes up by one, or a word such as an element. An index may start again after a blank
+line only, which here too begins a new component.
 """
 
 from collections.abc import Sequence
