@@ -57,6 +57,11 @@ def test_obj(content: str) -> None:
     assert lists("k.txt", content) == [component]  # it is recognised too
 
 
+def test_elements_are_no_words_of_obj() -> None:
+    for element in ("p", "s", "f", "o", "c"):
+        assert lists("k.txt", "".join(f"{element} {x} {y} {z}\n" for x, y, z in POINTS)) == [POINTS]
+
+
 def test_obj_of_several_components() -> None:
     lines = "l 1 2\nl 5 6\nl 2 3\nl 6 7\nl 3 4\nl 7 5\nl 4 1\n"
     assert lists("k.obj", f"{V}{W}{lines}") == [POINTS, OTHER]
