@@ -315,7 +315,7 @@ def test_binary_files_are_refused(tmp_path: Path) -> None:
         formats.read(path)
     assert (
         str(caught.value)
-        == f"{path}:3: byte 0xff is not UTF-8 text; give rows of x y z or an ASCII VECT file"
+        == f"{path}:3: byte 0xff is not UTF-8 text; give rows of x y z, or a file of another format"
     )
 
 

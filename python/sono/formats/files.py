@@ -58,7 +58,7 @@ def decoded(name: str, data: bytes) -> str:
         line = data.count(b"\n", 0, error.start) + 1
         byte = f"0x{data[error.start]:02x}"
         raise FormatError.at(
-            name, line, f"byte {byte} is not UTF-8 text; give rows of x y z or an ASCII VECT file"
+            name, line, f"byte {byte} is not UTF-8 text; give rows of x y z, or a file of another format"
         ) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
 

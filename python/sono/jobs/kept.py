@@ -19,6 +19,9 @@ def kept_row(job: Order, file: VertexFile, n: Target) -> Result:
         rope, measures, header = rope_in(output)
         if measures.n != aimed(n, measures.l_p):
             raise FormatError(f"{output}: has {measures.n} vertices, not {shown(n)}; move it away")
+        if not header.figures:
+            other = "says nothing of its rope, as NPY files cannot"
+            raise FormatError(f"{output}: {other}; move it away, or --force starts anew")
         if not header.made or header.origin != made_from(job, file):
             other = "is of another curve, method or setting"
             raise FormatError(f"{output}: {other}; repeat those or move it away, or --force starts anew")
