@@ -48,7 +48,7 @@ class Source:
 
     @property
     def name(self) -> str:
-        """What the curve is called in tables: a knot's name, or a file's without folder and suffix and its key."""
+        """What tables call the curve: a knot's name, or a file's without folder and suffix, and its key."""
         stem, key = self._parts()
         return stem if key is None else f"{stem}:{key}"
 
