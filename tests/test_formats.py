@@ -40,7 +40,7 @@ def lists(curve: VertexFile) -> list[list[list[float]]]:
     return [component.tolist() for component in curve.components]
 
 
-@pytest.mark.parametrize("suffix", ["xyz", "vect"])
+@pytest.mark.parametrize("suffix", ["txt", "xyz", "vect", "obj", "json", "npz", "npy", "txt.gz"])
 @given(curve=st.lists(polygons, min_size=1, max_size=4), comments=comments)
 def test_round_trip_keeps_every_bit(
     suffix: str,
@@ -49,6 +49,7 @@ def test_round_trip_keeps_every_bit(
     comments: list[str],
 ) -> None:
     assume(not any(map(ends_meet, curve)))
+    assume(suffix != "npy" or len({len(component) for component in curve}) == 1)
     assume(not jumps(curve)[1])
     path = tmp_path_factory.getbasetemp() / f"curve.{suffix}"
     formats.write(path, curve, comments)
@@ -139,7 +140,7 @@ def test_what_fortran_does_not_write(word: str) -> None:
         parsed(f"{word} 0 0\n1 0 0\n0 1 0\n")
 
 
-@pytest.mark.parametrize("suffix", ["stl", "npy", "png", "pdb", "csv", "n480"])
+@pytest.mark.parametrize("suffix", ["stl", "png", "csv", "n480"])
 def test_a_suffix_of_no_format_is_not_written(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"k.{suffix}"
     with pytest.raises(FormatError, match=rf"k\.{suffix}: \.{suffix} is no format for vertices"):
@@ -182,7 +183,7 @@ def test_where_counts_comments_and_blank_lines() -> None:
             "give three numbers x y z, and start other lines with #",
         ),
         ("# a\n0 0\n", "k.xyz:2: 2 columns; give three numbers x y z, and start other lines with #"),
-        ("1 0 0 0\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
+        ("1 0 0 C\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
         ("1, ,0,0\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
         (
             "the knot 3_1 in five\n",
@@ -346,8 +347,8 @@ def test_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_unknown_format_is_refused() -> None:
-    with pytest.raises(ValueError, match="unknown format 'obj'; the formats are: text, vect"):
-        formats.write("-", [], format="obj")
+    with pytest.raises(ValueError, match=r"unknown format 'stl'; the formats are: .*text, vect"):
+        formats.write("-", [], format="stl")
 
 
 def test_unwritable_files_are_named(tmp_path: Path) -> None:

@@ -28,7 +28,6 @@ class Frames:
 def frames(folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """A file of three curves, the second of which is wrong."""
     monkeypatch.setattr(formats, "READERS", {"frames": Frames(), **formats.READERS})
-    monkeypatch.setattr(formats, "SEVERAL", {"frames"})
     trefoil = text.write(starts.start("3_1"), [])
     Path("run.txt").write_text(f"FRAME 1\n{trefoil}FRAME b/2\n0 0 0\nFRAME 3\n{trefoil}")
     return "run.txt"
@@ -66,6 +65,7 @@ def test_standard_input_and_shards(frames: str, sono: Sono) -> None:
     assert sono("measure", "--", "-:3", input=content).stdout.splitlines()[1].startswith("stdin:3")
 
 
+@pytest.mark.slow
 def test_each_is_searched_for_by_itself(frames: str, sono: Sono) -> None:
     Path("list").write_text(f"{frames}\n")
     result = sono("search", "--list", "list", "--trials", "1", "--checkpoint", "c")

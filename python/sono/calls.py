@@ -71,7 +71,7 @@ def read_all(path: str | os.PathLike[str], close: Close | None = None) -> dict[s
 
 
 def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[str] = ()) -> None:
-    """Write a curve to a file whose suffix names the format: .txt, .xyz, .dat or none are text, or .vect.
+    """Write a curve to a file whose suffix names the format; .txt, .dat or none are rows of x y z.
 
     Coordinates keep every digit, and the file appears whole or not at all; the `comments` come first. Raises
     `FormatError` where it cannot be written.

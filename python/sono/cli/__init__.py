@@ -19,6 +19,7 @@ from sono.printing import printable
 COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",
     "compare": "Compare ropelengths with the published ones.",
+    "convert": "Write curves in another format.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
     "search": "Find the shortest tight rope of a knot.",
     "start": "Write the starting conformation of a knot.",

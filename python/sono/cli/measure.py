@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 def command(sources: tuple[str, ...], residual: bool, close: "Close | None", shown: options.Shown) -> None:
     """Measure curves: a row for each FILE, - for standard input, or for each curve in it; FILE:KEY is one.
 
-    FILE holds rows of x y z, with # comments and a blank line between the components of a link; or it is a
-    Geomview VECT file. Nothing is moved or scaled. L_c, a bound, is a dash where R_s <= dl/sqrt 2.
+    FILE holds rows of x y z, with # comments and a blank line between the components of a link, or a header
+    that names the columns; or it is of another format that is read. Nothing is moved or scaled. L_c, a bound,
+    is a dash where R_s <= dl/sqrt 2.
 
     The residual is the largest force, tension being 1, that is left over on a vertex when tensions, contact
     forces and bending couples balance as well as they can (non-negative least squares): 0 for a tight rope,
@@ -68,7 +69,8 @@ def _measured(source: "Source", residual: bool) -> tuple[tables.Row, list[str]]:
     curve = source.read()
     measures = measures_of(curve)
     doubts = curve.doubts()
+    file = f"{curve.name}:{curve.key}" if curve.key else curve.name
     if measures.l_c is None:
-        doubts.append(f"{curve.name}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
+        doubts.append(f"{file}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
     more = {"residual": patiently(partial(forces, curve.components)).residual} if residual else {}
-    return as_row(source.name, curve.name, measures, **more), doubts
+    return as_row(source.name, file, measures, **more), doubts

@@ -65,7 +65,7 @@ def claim(paths: Sequence[str]) -> None:
     if "sono.claims" not in context.meta:
         context.meta["sono.claims"] = context.with_resource(Claims())
     for folder in dict.fromkeys(os.path.dirname(path) for path in paths):
-        _make_folder(folder or ".")
+        make_folder(folder or ".")
         try:
             context.meta["sono.claims"].take(path for path in paths if os.path.dirname(path) == folder)
         except OSError as error:  # a file system without locks
@@ -73,7 +73,7 @@ def claim(paths: Sequence[str]) -> None:
             complain(f"{folder or '.'}: {why}; let no other sono write here meanwhile")
 
 
-def _make_folder(folder: str) -> None:
+def make_folder(folder: str) -> None:
     """Make a folder, or make sure that it can be written to."""
     try:
         os.makedirs(folder, exist_ok=True)

@@ -1,8 +1,8 @@
 """Curve files in and out: one module a format, each with `read(text, name)` or `write`, or both.
 
-A new format is one module and a line in `READERS` or `WRITERS`, with its suffixes in `SUFFIXES`. A file that
-is read is recognised by its content unless the suffix tells, and is plain text when nothing else fits; one
-that is written needs a suffix that is known, or none.
+A new format is one module and a line in `READERS`, or in `BINARY` if it is no text, or in `WRITERS`, with its
+suffixes in `SUFFIXES`. A file that is read is recognised by its content unless the suffix tells, and is plain
+text when nothing else fits; one that is written needs a suffix that is known, or none.
 
 A file may hold several curves, such as the frames of a simulation: `traj.xyz:12` is the one with the key 12.
 
@@ -18,12 +18,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import text, vect
+from sono.formats import jsons, npy, npz, obj, text, vect, xyz
 from sono.formats.closing import Close
-from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save
+from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
 
 __all__ = [
+    "FRAMED",
     "READERS",
     "SUFFIXES",
     "WRITERS",
@@ -44,7 +45,9 @@ __all__ = [
     "read_all",
     "save",
     "split",
+    "unpacked",
     "write",
+    "write_all",
 ]
 
 
@@ -58,6 +61,16 @@ class Reader(Protocol):
         """Parse a whole file into its curves, at least one; `name` is for messages."""
 
 
+class BinaryReader(Protocol):
+    """What the module of a format that is no text offers."""
+
+    MAGIC: bytes
+    """What its files begin with."""
+
+    def read(self, data: bytes, name: str) -> Sequence[Raw]:
+        """Parse a whole file into its curves, at least one; `name` is for messages."""
+
+
 class Writer(Protocol):
     """What the module of a format that is written offers."""
 
@@ -67,19 +80,48 @@ class Writer(Protocol):
 
 READERS: dict[str, Reader] = {
     "vect": vect,
+    "xyz": xyz,
+    "obj": obj,
+    "json": jsons,
     "text": text,  # the last one, as it takes any text for its own
 }
 
-SEVERAL: set[str] = set()
-"""The formats whose files may hold several curves, so that a batch looks into them before it begins."""
+BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz}
 
-WRITERS: dict[str, Writer] = {"vect": vect, "text": text}
+SINGLE = {"text", "vect", "obj", "json", "npy", "npz"}
+"""The formats whose files hold one curve; into others a batch looks before it begins."""
+
+WRITERS: dict[str, Writer] = {
+    "vect": vect,
+    "xyz": xyz,
+    "obj": obj,
+    "json": jsons,
+    "npy": npy,
+    "npz": npz,
+    "text": text,
+}
+
+FRAMED = {"xyz"}
+"""The formats of which several files, one after the other, are a file of several curves."""
 
 PLAIN = "text"
-"""The format whose suffixes say nothing."""
+"""The format of what has no suffix."""
 
-SUFFIXES = {"": "text", ".txt": "text", ".xyz": "text", ".dat": "text", ".vect": "vect"}
+SUFFIXES = {
+    "": "text",
+    ".txt": "text",
+    ".dat": "text",
+    ".xyz": "xyz",
+    ".vect": "vect",
+    ".obj": "obj",
+    ".json": "json",
+    ".npy": "npy",
+    ".npz": "npz",
+}
 """The format of a file by its suffix."""
+
+LOOSE = {PLAIN, "xyz"}
+"""The formats whose suffixes say little of what is in a file: plain rows are called .xyz as well."""
 
 
 def read(source: str | os.PathLike[str], close: Close | None = None) -> VertexFile:
@@ -136,15 +178,17 @@ def may_hold_several(path: str) -> bool:
     What cannot be read twice may, and what cannot be read.
     """
     try:
-        return is_stream(path) or _format_of(path, head(path)) in SEVERAL
+        return is_stream(path) or _format_of(path, head(path)) not in SINGLE
     except FormatError:
         return True
 
 
 def _format_of(name: str, data: bytes) -> str:
     """Tell which format a file of this name has that begins like this. Raises `FormatError`."""
+    if binary := next((key for key, reader in BINARY.items() if data.startswith(reader.MAGIC)), None):
+        return binary
     own = SUFFIXES.get(_suffix(name), PLAIN)
-    if own != PLAIN:
+    if own not in LOOSE:
         return own
     content = decoded(name, data)
     return next(key for key in READERS if READERS[key].recognises(content))
@@ -156,7 +200,10 @@ def parse(name: str, data: bytes, close: Close | None = None) -> list[VertexFile
 
 
 def _unchecked(name: str, data: bytes) -> Sequence[Raw]:
-    return READERS[_format_of(name, data)].read(decoded(name, data), name)
+    format = _format_of(name, data)
+    if format in BINARY:
+        return BINARY[format].read(data, name)
+    return READERS[format].read(decoded(name, data), name)
 
 
 def write(
@@ -171,11 +218,24 @@ def write(
     whole or not at all. Raises `FormatError` if it cannot be written or its suffix is that of no format,
     `ValueError` for an unknown format.
     """
+    write_all(target, [(components, comments)], format)
+
+
+def write_all(
+    target: str | os.PathLike[str],
+    curves: Iterable[tuple[Iterable[NDArray[np.float64]], Sequence[str]]],
+    format: str | None = None,
+) -> None:
+    """Write curves, each with its comments, to one file, likewise; several need a format with frames."""
     name = os.fspath(target)
     format = format or by_suffix(name)
     if format not in WRITERS:
         raise ValueError(f"unknown format {format!r}; the formats are: {', '.join(sorted(WRITERS))}")
-    save(name, WRITERS[format].write(components, comments))
+    try:
+        contents = [WRITERS[format].write(components, comments) for components, comments in curves]
+    except FormatError as error:
+        raise FormatError(f"{name}: {error}") from error
+    save(name, contents[0] if len(contents) == 1 else "".join(map(str, contents)))
 
 
 def by_suffix(name: str) -> str:
@@ -189,4 +249,4 @@ def by_suffix(name: str) -> str:
 
 
 def _suffix(name: str) -> str:
-    return PurePath(name.lower().removesuffix(".gz")).suffix
+    return PurePath(unpacked(name.lower())).suffix

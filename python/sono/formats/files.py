@@ -69,16 +69,23 @@ def is_stream(output: str) -> bool:
     return output == "-" or (there and not os.path.isfile(output) and not os.path.isdir(output))
 
 
+def unpacked(path: str) -> str:
+    """Return the name that a file packed by gzip has when it is unpacked."""
+    return path[: -len(".gz")] if path.lower().endswith(".gz") else path
+
+
 def save(target: str, content: str | bytes) -> None:
-    """Write a whole file, or to standard output for "-". Raises `FormatError`."""
+    """Write a whole file, packed if it is called .gz, or to standard output for "-". Raises `FormatError`."""
     if target == "-":
         stdout: IO[Any] = sys.stdout if isinstance(content, str) else sys.stdout.buffer
         stdout.write(content)
         stdout.flush()
         return
+    data = content.encode() if isinstance(content, str) else content
     try:
         with atomic(target) as stream:
-            stream.write(content.encode() if isinstance(content, str) else content)
+            # Without the time, so that the same curve gives the same bytes.
+            stream.write(data if unpacked(target) == target else gzip.compress(data, mtime=0))
     except OSError as error:
         raise FormatError(f"{target}: cannot be written: {error.strerror or error}") from error
 

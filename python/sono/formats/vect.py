@@ -42,7 +42,8 @@ def read(text: str, name: str) -> list[Raw]:
     chains = [words.chain(size, line) for size, line in zip(sizes, lines, strict=True)]
     words.numbers(4 * colours, "a colour")
     words.end()
-    return [Raw(chains)]
+    comments = [line.partition("#")[2].strip() for line in text.split("\n") if line.lstrip().startswith("#")]
+    return [Raw(chains, comments=comments)]
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:

@@ -50,19 +50,21 @@ class Raw:
     """A curve as a format has read it, not yet checked.
 
     The `key` tells it from the others in its file, if there may be any. The `notes` tell the user what was
-    made of the file.
+    made of the file. The `comments` are what the file says of it.
     """
 
     chains: Sequence[Chain]
     key: str = ""
     notes: Sequence[str] = ()
+    comments: Sequence[str] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class VertexFile:
     """A curve as read: `components`, each (n_i, 3) in the file's unit, and the `lines`, each (n_i,).
 
-    The `key` tells it from others of the same file. The `notes` tell the user what was made of the file.
+    The `key` tells it from others of the same file. The `notes` tell the user what was made of the file, the
+    `comments` are what the file says of the curve.
     """
 
     name: str
@@ -70,6 +72,7 @@ class VertexFile:
     lines: list[NDArray[np.int64]]
     key: str = ""
     notes: Sequence[str] = ()
+    comments: Sequence[str] = ()
 
     def where(self, component: int, vertex: int) -> str:
         """Say where a vertex stands (both indices 0-based), as "name:line"."""
@@ -95,7 +98,9 @@ class VertexFile:
             strand, note = strand.closed(close)
             closed.append(strand)
             notes += [note] if note else []
-        return cls(name, [it.vertices for it in closed], [it.lines for it in closed], raw.key, notes)
+        return cls(
+            name, [it.vertices for it in closed], [it.lines for it in closed], raw.key, notes, raw.comments
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -72,7 +72,7 @@ def _away(job: Job, free: dict[str, str]) -> "tuple[list[Result], dict[str, byte
         here: dict[str, str] = {}
 
         def moved(path: str) -> str:
-            suffix = "" if path == "-" else Path(path).suffix
+            suffix = "" if path == "-" else "".join(Path(path).suffixes[-2:])
             temporary = os.path.join(folder, f"{len(here)}{suffix}")
             here[temporary] = path
             here[free_name(temporary)] = free.get(path, path)

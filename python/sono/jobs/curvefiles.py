@@ -11,7 +11,7 @@ from typing import Any
 from sono import formats
 from sono._core import CurveError
 from sono.curve import Measures, measure
-from sono.formats import FormatError, VertexFile, is_stream, ropefile
+from sono.formats import FormatError, VertexFile, is_stream, ropefile, unpacked
 from sono.formats.ropefile import Header
 
 KEPT_RESIDUAL = 1e-6
@@ -27,9 +27,8 @@ def measured(source: str) -> tuple[VertexFile, Measures]:
 
 def rope_in(path: str) -> tuple[VertexFile, Measures, Header]:
     """Read and measure a rope's file, and its header, likewise."""
-    name, data = formats.load(path)
-    (file,) = formats.parse(name, data)
-    return file, measures_of(file), ropefile.parse(formats.decoded(name, data))
+    file, measures = measured(path)
+    return file, measures, ropefile.parse("".join(f"# {line}\n" for line in file.comments))
 
 
 def measures_of(file: VertexFile) -> Measures:
@@ -57,8 +56,9 @@ def free_name(output: str) -> str:
 
 def names_of_best(output: str) -> Iterator[str]:
     """Give the names beside `output` for unfinished results, one after the other."""
-    path = Path(output)
-    return (os.fspath(path.with_suffix(f".best{k}{path.suffix}")) for k in chain([""], count(2)))
+    path = Path(unpacked(output))
+    packed = output[len(unpacked(output)) :]
+    return (os.fspath(path.with_suffix(f".best{k}{path.suffix}{packed}")) for k in chain([""], count(2)))
 
 
 def digest(file: VertexFile, *settings: Any) -> str:
@@ -67,8 +67,3 @@ def digest(file: VertexFile, *settings: Any) -> str:
     for component in file.components:
         found.update(component.tobytes() + b"end of component")
     return found.hexdigest()[:32]
-
-
-def header_of(path: str) -> Header:
-    """Read the header of a rope's file. Raises `FormatError`."""
-    return ropefile.parse(formats.decoded(*formats.load(path)))

@@ -60,7 +60,7 @@ class Source:
 
     def _parts(self) -> tuple[str, str | None]:
         path, key = formats.split(self.given)
-        return ("stdin" if path == "-" else PurePath(path.removesuffix(".gz")).stem), key
+        return ("stdin" if path == "-" else PurePath(formats.unpacked(path)).stem), key
 
     @property
     def piped(self) -> bool:
@@ -117,4 +117,5 @@ def _drawn(knot: str) -> VertexFile:
         curve = starts.start(knot)
     except ValueError as error:
         raise FormatError(f"{knot}: no such file, nor a knot: {error}") from error
-    return VertexFile(knot, list(curve), [np.arange(len(component)) + 1 for component in curve])
+    lines = [np.arange(len(component)) + 1 for component in curve]
+    return VertexFile(knot, list(curve), lines, comments=[knot])
