@@ -4,6 +4,7 @@ import errno
 import io
 import os
 import sys
+import zlib
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -14,10 +15,24 @@ import click
 from sono.cli.streams import complain
 from sono.jobs.locks import Claims, Taken
 
+LONGEST_NAME = 80
+"""Letters of a knot's name that files are called by; a longer one, which is a code, is cut and marked."""
+
+_UNLIKE_FILES = str.maketrans("/:|", "-_;")
+
 
 def knot_name(source: str) -> str:
-    """A file's name without folder and suffix; "stdin" for standard input."""
-    return "stdin" if source == "-" else Path(source).stem
+    """A file's name without folder and suffix, or a knot's as files have it; "stdin" for standard input."""
+    from sono.jobs.sources import is_name  # here, since numpy would make --help wait
+
+    if source == "-":
+        return "stdin"
+    if not is_name(source):
+        return Path(source).stem
+    name = " ".join(source.translate(_UNLIKE_FILES).split())
+    if len(name) > LONGEST_NAME:
+        name = f"{name[:LONGEST_NAME]}~{zlib.crc32(name.encode()):08x}"
+    return name
 
 
 def names_one_file(path: str) -> bool:

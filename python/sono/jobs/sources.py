@@ -8,13 +8,13 @@ from sono import formats, starts
 from sono.formats import FormatError, VertexFile
 
 _OF_FILES = "./\\"
-"""What no name of a knot has."""
+"""What looks like a file, but for names of knots such as 5.2.1 and 5/2."""
 
 
 def is_name(source: str) -> bool:
     """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
     is_file = os.path.exists(source) and not os.path.isdir(source)
-    return source != "-" and not is_file and not set(_OF_FILES) & set(source)
+    return source != "-" and not is_file and (not set(_OF_FILES) & set(source) or starts.knows(source))
 
 
 def shadowed(source: str) -> bool:
