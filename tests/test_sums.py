@@ -39,7 +39,8 @@ def test_links_are_joined_at_their_first_components() -> None:
     assert sorted(linking_matrix(diagram(chain))[0].tolist()) == [0, 1, 1]
     assert homfly(chain) == homfly(start("Hopf#Hopf", 3))
     assert len(start("Borromean#4_1#Whitehead")) == 4
-    assert not has_variants("Hopf#3_1")
+    assert has_variants("Hopf#3_1")
+    assert not has_variants("T(2,5)#3_1")
 
 
 def test_sums_tighten_by_name() -> None:

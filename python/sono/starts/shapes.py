@@ -9,7 +9,6 @@ and its coordinates are whole thousandths of the radius.
 """
 
 import io
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -21,6 +20,8 @@ import numpy as np
 
 from sono.curve import Components
 from sono.starts.drawing import mirror
+from sono.starts.spelling import spelled
+from sono.starts.tabled import knot_rows
 
 EDGE = 0.45
 """Edge length of the shapes, in radii."""
@@ -42,13 +43,13 @@ class Shape:
 def known(name: str) -> Components | None:
     """Return the shortest shape known of a knot that the atlas has, or None."""
     plain = name.strip()
+    if plain[:1].casefold() == "m":
+        found = known(plain[1:])
+        return found and mirror(found)
+    row = knot_rows().get(spelled(plain), {"knot": spelled(plain)})
     there = {knot.casefold(): knot for knot in lengths()}
-    if knot := there.get(plain.casefold()):
-        return shape(knot)
-    mirrored = re.sub("^m", "", plain, flags=re.IGNORECASE)
-    if mirrored != plain and (knot := there.get(mirrored.casefold())):
-        return mirror(shape(knot))
-    return None
+    knot = there.get(row["knot"].casefold())
+    return shape(knot) if knot else None
 
 
 @cache
