@@ -82,8 +82,9 @@ def start(name: str, variant: int = 0) -> Components:
 
     Variant 0 is a closed braid or a torus knot, ready to be tightened, or drawn from a diagram. Each further
     `variant` is another conformation of the same type. Those of knots and links in the tables are random arc
-    presentations, some of them with more columns than needed; the negative ones are drawn from a planar
-    diagram after random flypes, as are those of pretzels, two-bridge links and codes. All others are
+    presentations, some of them with more columns than needed, and the negative ones are drawn from a planar
+    diagram after random flypes. Pretzels, two-bridge links and codes are always drawn from a diagram, which
+    the negative variants flype first. All others are
     isotopic scrambles. Raises ValueError, with the nearest known name, for anything else.
     """
     first, *others = name.split("#")
@@ -102,18 +103,14 @@ def _drawn(name: str, variant: int) -> Components:
     if found := _matched(name, _DIAGRAMS):
         pattern, match = found
         diagram = _DIAGRAMS[pattern](match)
-        if variant < 0:
-            return lifted(flyped(diagram, -variant), -variant)
-        curve = lifted(diagram, 0)
-    elif found := _matched(name, _CURVES):
-        if variant < 0:
-            raise ValueError(
-                f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more"
-            )
-        pattern, match = found
-        curve = _CURVES[pattern](match)
-    else:
+        return lifted(flyped(diagram, -variant) if variant < 0 else diagram, abs(variant))
+    found = _matched(name, _CURVES)
+    if not found:
         raise unknown(spelled(name), names())
+    if variant < 0:
+        raise ValueError(f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more")
+    pattern, match = found
+    curve = _CURVES[pattern](match)
     return scramble(curve, variant) if variant else curve
 
 
