@@ -15,22 +15,26 @@ generator is a right-handed crossing, so 3_1 is the right-handed trefoil.
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 
 from sono.curve import Components
 from sono.starts import codes
 from sono.starts.braids import braid
-from sono.starts.diagrams import Diagram
+from sono.starts.diagrams import Diagram, reduced
 from sono.starts.drawing import mirror
 from sono.starts.flypes import flyped
 from sono.starts.links import link_names
 from sono.starts.planar import lifted
 from sono.starts.scramble import scramble
 from sono.starts.spelling import spelled, unknown
-from sono.starts.sums import joined
+from sono.starts.sums import EnclosedError, joined
 from sono.starts.tabled import conformation, is_tabled, table_row
 from sono.starts.tables import table
 from sono.starts.tangles import conway, pretzel, two_bridge
 from sono.starts.torus import chain, torus
+
+OUTSIDES = 20
+"""Variants that are tried of a sum whose parts cannot be joined as they are drawn first."""
 
 _INTEGER = r"-?\d{1,999}"
 _INTEGERS = rf"{_INTEGER}(?:\s*,\s*{_INTEGER})*"
@@ -89,11 +93,25 @@ def start(name: str, variant: int = 0) -> Components:
     """
     first, *others = name.split("#")
     if others:
-        return joined(start(first, variant), start("#".join(others), variant), abs(variant))
+        return _sum(first, "#".join(others), variant)
     plain = _closed_up(name)
     if plain[:1].casefold() == "m":
         return mirror(start(plain[1:], variant))
     return _drawn(plain, variant)
+
+
+def _sum(one: str, other: str, variant: int) -> Components:
+    """Return a connected sum, of other variants where the first component of a part is inside of others."""
+    variants = [variant]
+    if has_variants(one) and has_variants(other):
+        # Each is drawn from a diagram with another face outside.
+        variants += range(-abs(variant) - 1, -abs(variant) - OUTSIDES, -1)
+    for drawn in variants:
+        with suppress(EnclosedError):
+            return joined(start(one, drawn), start(other, drawn), abs(variant))
+    raise EnclosedError(
+        f"{one}#{other}: the first component of a part is inside of others, so nothing joins it"
+    )
 
 
 def _drawn(name: str, variant: int) -> Components:
@@ -102,7 +120,7 @@ def _drawn(name: str, variant: int) -> Components:
         return conformation(row, variant)
     if found := _matched(name, _DIAGRAMS):
         pattern, match = found
-        diagram = _DIAGRAMS[pattern](match)
+        diagram = reduced(_DIAGRAMS[pattern](match))
         return lifted(flyped(diagram, -variant) if variant < 0 else diagram, abs(variant))
     found = _matched(name, _CURVES)
     if not found:
