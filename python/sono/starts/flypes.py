@@ -17,7 +17,7 @@ Site = tuple[int, set[int], list[tuple[Slot, Slot]]]
 
 
 def flyped(diagram: Diagram, seed: int) -> Diagram:
-    """Return the diagram after a random number of random flypes, if it has any."""
+    """Return a diagram without nugatory crossings after a random number of random flypes, if it has any."""
     random = np.random.default_rng(seed)
     for _ in range(random.integers(MOST + 1)):
         if sites := _sites(diagram):

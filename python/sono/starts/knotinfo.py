@@ -5,6 +5,9 @@ import re
 from functools import cache
 from typing import Any
 
+MISFIT = "L10n99{0,0,0}"
+"""The link whose braid has another orientation than its diagram and LinkInfo's linking matrix."""
+
 
 @cache  # it takes a second to read
 def knots() -> dict[str, dict[str, str]]:
@@ -42,12 +45,17 @@ def knot_row(name: str) -> dict[str, str]:
 
 
 def link_row(name: str) -> dict[str, str]:
-    """Return the row of a link as the table links.tsv would have it. Raises KeyError and ImportError."""
+    """Return the row of a link as the table links.tsv would have it, but for the braid of `MISFIT`.
+
+    Raises KeyError and ImportError.
+    """
     row = links()[name.casefold()]
-    _, word = _numbers(row["braid_notation"])
+    _, *word = re.findall(
+        r"-?\d+", row["braid_notation"]
+    )  # strands and generators; a bracket is missing once
     return {
         "link": row["name"],
-        "braid": ",".join(map(str, word)),
+        "braid": ",".join(word) if row["name"] != MISFIT else "",
         # LinkInfo's arc presentations are the mirror images of its braids.
         "grid": _grid(_numbers(row["arc_notation"])[::-1]),
         "pd": _pd(_numbers(row["pd_notation_vector"])),

@@ -15,22 +15,26 @@ generator is a right-handed crossing, so 3_1 is the right-handed trefoil.
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 
 from sono.curve import Components
 from sono.starts import codes
 from sono.starts.braids import braid
-from sono.starts.diagrams import Diagram
+from sono.starts.diagrams import Diagram, reduced
 from sono.starts.drawing import mirror
 from sono.starts.flypes import flyped
 from sono.starts.links import link_names
 from sono.starts.planar import lifted
 from sono.starts.scramble import scramble
 from sono.starts.spelling import spelled, unknown
-from sono.starts.sums import joined
+from sono.starts.sums import EnclosedError, joined
 from sono.starts.tabled import conformation, is_tabled, table_row
 from sono.starts.tables import table
 from sono.starts.tangles import conway, pretzel, two_bridge
 from sono.starts.torus import chain, torus
+
+OUTSIDES = 20
+"""Variants that are tried of a sum whose parts cannot be joined as they are drawn first."""
 
 _INTEGER = r"-?\d{1,999}"
 _INTEGERS = rf"{_INTEGER}(?:\s*,\s*{_INTEGER})*"
@@ -82,17 +86,32 @@ def start(name: str, variant: int = 0) -> Components:
 
     Variant 0 is a closed braid or a torus knot, ready to be tightened, or drawn from a diagram. Each further
     `variant` is another conformation of the same type. Those of knots and links in the tables are random arc
-    presentations, some of them with more columns than needed; the negative ones are drawn from a planar
-    diagram after random flypes, as are those of pretzels, two-bridge links and codes. All others are
+    presentations, some of them with more columns than needed, and the negative ones are drawn from a planar
+    diagram after random flypes. Pretzels, two-bridge links and codes are always drawn from a diagram, which
+    the negative variants flype first. All others are
     isotopic scrambles. Raises ValueError, with the nearest known name, for anything else.
     """
     first, *others = name.split("#")
     if others:
-        return joined(start(first, variant), start("#".join(others), variant), abs(variant))
+        return _sum(first, "#".join(others), variant)
     plain = _closed_up(name)
     if plain[:1].casefold() == "m":
         return mirror(start(plain[1:], variant))
     return _drawn(plain, variant)
+
+
+def _sum(one: str, other: str, variant: int) -> Components:
+    """Return a connected sum, of other variants where the first component of a part is inside of others."""
+    variants = [variant]
+    if has_variants(one) and has_variants(other):
+        # Each is drawn from a diagram with another face outside.
+        variants += range(-abs(variant) - 1, -abs(variant) - OUTSIDES, -1)
+    for drawn in variants:
+        with suppress(EnclosedError):
+            return joined(start(one, drawn), start(other, drawn), abs(variant))
+    raise EnclosedError(
+        f"{one}#{other}: the first component of a part is inside of others, so nothing joins it"
+    )
 
 
 def _drawn(name: str, variant: int) -> Components:
@@ -101,19 +120,15 @@ def _drawn(name: str, variant: int) -> Components:
         return conformation(row, variant)
     if found := _matched(name, _DIAGRAMS):
         pattern, match = found
-        diagram = _DIAGRAMS[pattern](match)
-        if variant < 0:
-            return lifted(flyped(diagram, -variant), -variant)
-        curve = lifted(diagram, 0)
-    elif found := _matched(name, _CURVES):
-        if variant < 0:
-            raise ValueError(
-                f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more"
-            )
-        pattern, match = found
-        curve = _CURVES[pattern](match)
-    else:
+        diagram = reduced(_DIAGRAMS[pattern](match))
+        return lifted(flyped(diagram, -variant) if variant < 0 else diagram, abs(variant))
+    found = _matched(name, _CURVES)
+    if not found:
         raise unknown(spelled(name), names())
+    if variant < 0:
+        raise ValueError(f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more")
+    pattern, match = found
+    curve = _CURVES[pattern](match)
     return scramble(curve, variant) if variant else curve
 
 

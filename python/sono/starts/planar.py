@@ -27,6 +27,9 @@ LONGEST = 2000
 """Ropelength up to which a drawing is taken; one in a hundred is longer. A rope in flat triangles is thin: at
 a length of 10,000 it takes ten seconds to collapse, if it does."""
 
+TRIES = 12
+"""Outer faces that are tried; a knot of 10 crossings has as many."""
+
 PULL = 0.3
 """The power of its length by which a line's weight grows in a round."""
 
@@ -71,7 +74,7 @@ def _lifted(diagram: Diagram, seed: int) -> Components:
     around = faces(diagram.far)
     crossing, edge = _points(diagram)
     drawings = []
-    for outer in (np.arange(len(around)) + seed % len(around)) % len(around):
+    for outer in ((np.arange(len(around)) + seed % len(around)) % len(around))[:TRIES]:
         lines, boundary = _triangulated(crossing, edge, around, int(outer))
         points = _drawn(lines, boundary, np.random.default_rng(seed))
         lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)

@@ -77,11 +77,13 @@ def conformation(row: dict[str, str], variant: int) -> Components:
 
 
 def _plain(row: dict[str, str]) -> Components:
-    """Return the torus knot, chain or closed braid of a row."""
+    """Return the torus knot, chain or closed braid of a row, or what its diagram gives where it has none."""
     if torus_type := _TORI.get(row.get("knot", "")):
         return torus(*torus_type)
     if row.get("link") == "L2a1{1}":
         return chain(2)
+    if not row["braid"]:
+        return lifted(diagram("pd", row["pd"]), 0)
     return braid([int(generator) for generator in re.findall(r"-?\d+", row["braid"])])
 
 

@@ -36,7 +36,7 @@ def pretzel(columns: Sequence[int]) -> Diagram:
 
 
 def two_bridge(p: int, q: int) -> Diagram:
-    """Return the diagram of the two-bridge link of a fraction, oriented at will.
+    """Return the diagram of the two-bridge link of a fraction, oriented as `conway` does.
 
     Raises ValueError unless the fraction is in lowest terms.
     """
@@ -45,18 +45,20 @@ def two_bridge(p: int, q: int) -> Diagram:
     if (divisor := math.gcd(p, q)) > 1:
         raise ValueError(f"{p}/{q} is not in lowest terms; write {p // divisor}/{q // divisor}")
     p, q = (p, q) if p > 0 else (-p, -q)
+    # Knots are the same for all q that differ by p, oriented links for all that differ by 2 p.
+    q = q % p if p % 2 else (q + p) % (2 * p) - p
+    hand, q = (1, q) if q > 0 else (-1, -q)
     terms = []
-    q %= p
     while q:
-        terms.append(p // q)
+        terms.append(hand * (p // q))
         p, q = q, p % q
     return conway([*reversed(terms)] or [1])
 
 
 def conway(terms: Sequence[int]) -> Diagram:
-    """Return the diagram of a two-bridge link in Conway's notation, oriented at will.
+    """Return the diagram of a two-bridge link in Conway's notation. Raises ValueError for a term 0.
 
-    Raises ValueError for a term 0.
+    The strands that close it above and below run the same way, so C(4) is T(2,4).
     """
     _check(terms, f"C({','.join(map(str, terms))})")
     numbers = count()
@@ -71,11 +73,9 @@ def conway(terms: Sequence[int]) -> Diagram:
 
 def _check(terms: Sequence[int], name: str) -> None:
     if 0 in terms:
-        raise ValueError(
-            f"{name}: each number counts half turns, of which there must be some; leave out the 0"
-        )
+        raise ValueError(f"{name[:60]}: a number of half turns must not be 0")
     if sum(map(abs, terms)) > MOST_CROSSINGS:
-        raise ValueError(f"{name} has too many crossings to draw; {MOST_CROSSINGS} are the most")
+        raise ValueError(f"{name[:60]} has too many crossings to draw; {MOST_CROSSINGS} are the most")
 
 
 def _row(numbers: Iterator[int], turns: int) -> list[Tangle]:
@@ -106,7 +106,7 @@ def _closed(tangle: Tangle) -> Diagram:
     a, b, c, d = tangle.ends
     far = _joined(tangle.far, (a, b), (c, d))
     begins: list[Slot | None] = []
-    unseen = dict.fromkeys(sorted(far))
+    unseen = dict.fromkeys((b, c, *sorted(far)))
     while unseen:
         begins.append(slot := next(iter(unseen)))
         while slot in unseen:
