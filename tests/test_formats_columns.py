@@ -53,6 +53,9 @@ def test_leading_columns(template: str, first: int) -> None:
         ("pos_x pos_y pos_z vx vy vz", "{1} {2} {3} 1 1 1"),
         ("element,x,y,z,charge", "C,{1},{2},{3},-1"),
         ("x y z", "{1} {2} {3}"),
+        ("x,y,z,", "{1},{2},{3},"),
+        ("x_nm,y_nm,z_nm", "{1},{2},{3}"),
+        ("x-coord y-coord z-coord", "{1} {2} {3}"),
     ],
 )
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
@@ -104,6 +107,27 @@ def test_a_column_tells_components_apart(name: str, mark: str) -> None:
 def test_what_is_not_guessed(content: str, message: str) -> None:
     with pytest.raises(FormatError, match=rf"^k\.txt:{re.escape(message)}"):
         parsed(content)
+
+
+def test_a_comment_may_be_the_header_of_more_columns() -> None:
+    assert parsed("# made by hand\n# x y z radius\n" + rows("{1} {2} {3} 0.5")) == [POINTS]
+    assert parsed("# model of a knot\n" + rows("{} {} {} {}")) == [POINTS]
+    assert parsed("# x, y, z, tension\n" + rows("{1}, {2}, {3}, 0.5")) == [POINTS]
+    assert parsed("# z y x\n" + rows("{1} {2} {3}")) == [POINTS]  # three columns are x y z whatever is said
+
+
+def test_tables_may_be_joined() -> None:
+    table = "id,x,y,z\n" + rows("{},{},{},{}")
+    assert parsed(table + table) == [POINTS, POINTS]
+    both = "chain,ring,x,y,z\n" + "".join(rows(f"{a},{b},{{1}},{{2}},{{3}}") for a in "AB" for b in "12")
+    assert parsed(both) == [POINTS] * 4
+
+
+def test_a_mark_may_end_the_rows() -> None:
+    assert parsed(rows("{1},{2},{3},")) == [POINTS]
+    assert parsed(rows("{};{};{};{};")) == [POINTS]
+    with pytest.raises(FormatError, match=r"k\.txt:1: '' is not a number"):
+        parsed("1,2,,\n")
 
 
 def test_elements_may_change() -> None:

@@ -47,6 +47,7 @@ def lists(name: str, content: str | bytes) -> list[Any]:
         V.replace("\n", " 1.0 0.5 0.5 0.5\n") + "l 1 2 3 4 1\n",
         V,
         V.replace(" ", "\t"),
+        f"{V}l 1 2 \\\n3 4 \\\n1\n",
     ],
 )
 def test_obj(content: str) -> None:
@@ -54,6 +55,11 @@ def test_obj(content: str) -> None:
     turned = [POINTS[k:] + POINTS[:k] for k in range(4)]
     assert component in turned + [points[::-1] for points in turned]
     assert lists("k.txt", content) == [component]  # it is recognised too
+
+
+def test_elements_are_no_words_of_obj() -> None:
+    for element in ("p", "s", "f", "o", "c"):
+        assert lists("k.txt", "".join(f"{element} {x} {y} {z}\n" for x, y, z in POINTS)) == [POINTS]
 
 
 def test_obj_of_several_components() -> None:

@@ -90,6 +90,18 @@ def test_what_is_written_is_read_again(comments: list[str], tmp_path: Path) -> N
     assert (tmp_path / "k.xyz").read_text().count("\n") == 2 + sum(map(len, link))
 
 
+def test_rings_that_nothing_tells_apart_are_told() -> None:
+    rings = [*starts.start("Hopf"), starts.start("3_1")[0] + 50]
+    content = xyz.write(rings, [])
+    (told,) = parsed(re.sub('components="[^"]*"', "a melt", content))
+    sizes = [len(ring) for ring in rings]
+    notes = [note.partition(";")[0] for note in told.doubts() if "far longer edge" in note]
+    assert notes == [f"k.xyz:{2 + sum(sizes[:k])}: a far longer edge follows" for k in (1, 2)]
+    assert parsed(content)[0].doubts() == []
+    for name in ("3_1", "8_19", "T(2,9)"):
+        assert parsed(re.sub("components", "c", xyz.write(starts.start(name), [])))[0].doubts() == []
+
+
 def test_open_chains() -> None:
     steps = np.cumsum(np.full((40, 3), 0.5), axis=0) + np.random.default_rng(1).normal(0, 0.1, (40, 3))
     rows = "".join(f"C {x} {y} {z}\n" for x, y, z in steps)

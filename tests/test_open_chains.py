@@ -22,11 +22,11 @@ KNOT = starts.start("3_1")[0]
 TAIL = np.linspace(1, 4, 40)[:, None]
 
 
-def cut() -> Floats:
-    """A trefoil cut open where it is outermost, with its ends drawn far apart, outwards."""
-    first = int(np.linalg.norm(KNOT - KNOT.mean(axis=0), axis=1).argmax())
-    chain = np.roll(KNOT, -first, axis=0)
-    out = chain[0] - KNOT.mean(axis=0)
+def cut(knot: Floats = KNOT) -> Floats:
+    """A knot cut open where it is outermost, with its ends drawn far apart, outwards."""
+    first = int(np.linalg.norm(knot - knot.mean(axis=0), axis=1).argmax())
+    chain = np.roll(knot, -first, axis=0)
+    out = chain[0] - knot.mean(axis=0)
     side = 0.5 * np.cross(out, [0, 0, 1])
     return np.vstack([chain[1] + (out - side) * TAIL[::-1], chain[1:-1], chain[-2] + (out + side) * TAIL])
 
@@ -67,10 +67,23 @@ def test_a_closed_chain_has_no_giant_edge_and_the_right_type(close: formats.Clos
     assert fingerprint([vertices]) == fingerprint([KNOT])
 
 
-def test_the_two_ways_may_differ_and_rows_that_look_open_are_told() -> None:
-    # A straight rod through the trefoil's hole is no part of a knot by the sphere, but may be by an edge.
-    (doubt,) = checked(cut(), True).doubts()
-    assert "--close sphere" in doubt
+@pytest.mark.parametrize("name", ["4_1", "5_1", "m5_2", "6_3", "8_19"])
+def test_ends_that_reach_out_keep_the_knot(name: str) -> None:
+    (knot,) = starts.start(name)
+    file = checked(cut(knot), False, "sphere")
+    assert fingerprint(file.components) == fingerprint([knot])
+
+
+def test_the_two_ways_may_give_two_knots() -> None:
+    chain = KNOT[:-12]
+    types = [fingerprint(checked(chain, False, close).components) for close in ("direct", "sphere")]
+    assert types == [fingerprint([KNOT]), fingerprint(starts.start("unknot"))]
+
+
+def test_closed_chains_are_left_alone() -> None:
+    for close in ("direct", "sphere"):
+        file = checked(KNOT, True, close)
+        assert (bool((file.components[0] == KNOT).all()), file.doubts()) == (True, [])
 
 
 @given(

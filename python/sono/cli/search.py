@@ -63,7 +63,7 @@ def command(
     resume: bool,
     shown: options.Shown,
 ) -> None:
-    """Search for the shortest tight rope of each knot, a NAME such as 8_20 or a FILE.
+    """Search for the shortest tight rope of each knot, a NAME such as 8_20 or a FILE, or each curve in it.
 
     Each trial tightens another starting conformation on few beads; the most promising shapes are refined and
     polished. The rows are the shortest minima found: hits tells in how many trials. The best rope so far is

@@ -125,6 +125,8 @@ def command(
 ) -> None:
     """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N or DL.
 
+    Of a FILE that holds several curves, such as a trajectory, each is tightened; FILE:KEY is one of them.
+
     The rope has radius 1. L_p, L_c and L_a are what the written vertices measure. Where a run is stopped by
     Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt, unless it is on a cluster.
     Standard input has the NAME stdin, or else stdin-2 and so on.

@@ -167,7 +167,7 @@ def _listed(curves: Sequence[Raw]) -> str:
 
 def split(source: str) -> tuple[str, str | None]:
     """Split "FILE:KEY" into the file and the key of one of its curves; without a key it is None."""
-    colons = [] if os.path.exists(source) else [match.start() for match in re.finditer(":", source)]
+    colons = [] if os.path.exists(source) else [match.start() for match in re.finditer(":", source)][::-1]
     cut = next((at for at in colons if os.path.isfile(source[:at]) or source[:at] == "-"), None)
     return (source, None) if cut is None else (source[:cut], source[cut + 1 :])
 

@@ -42,10 +42,10 @@ def head(path: str) -> bytes:
     """Give the first whole lines of a file. Raises `FormatError` when it cannot be read."""
     try:
         with open(path, "rb") as stream:
-            packed = stream.read(len(GZIP)) == GZIP
-        with gzip.open(path) if packed else open(path, "rb") as stream:
-            data: bytes = stream.read(HEAD)
-    except (OSError, EOFError, zlib.error) as error:
+            data = stream.read(HEAD)
+        if data.startswith(GZIP):
+            data = zlib.decompressobj(zlib.MAX_WBITS + 16).decompress(data, HEAD)
+    except (OSError, zlib.error) as error:
         raise FormatError(f"{path}: cannot be read: {error}") from error
     return data[: data.rfind(b"\n") + 1] or data
 

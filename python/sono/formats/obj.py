@@ -5,6 +5,7 @@ first vertex is closed, any other is open; without lines all vertices are one ch
 Source: the Advanced Visualizer manual, appendix B1, "Object Files".
 """
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
@@ -13,14 +14,17 @@ from numpy.typing import NDArray
 
 from sono.formats.vertices import Chain, FormatError, Raw, not_a_number, numbers, shown
 
+_FIRST = re.compile(r"(?:[^\S\n]*(?:#[^\n]*)?\n)*[^\S\n]*([a-z]+)\s")
+_VERTICES = re.compile(r"^[^\S\n]*v\s", re.MULTILINE)
+
 WORDS = frozenset(("v", "vn", "vt", "vp", "l", "f", "p", "o", "g", "s", "mtllib", "usemtl"))
 """What lines begin with."""
 
 
 def recognises(text: str) -> bool:
-    """Tell whether the first words of the file are those of OBJ."""
-    words = (line.split("#")[0].split() for line in text.split("\n"))
-    return next((row[0] for row in words if row), "") in WORDS
+    """Tell whether the first word is one of OBJ's, and a line of vertices follows."""
+    first = _FIRST.match(text)
+    return first is not None and first[1] in WORDS and _VERTICES.search(text) is not None
 
 
 def read(text: str, name: str) -> list[Raw]:
@@ -29,8 +33,11 @@ def read(text: str, name: str) -> list[Raw]:
     lines: list[int] = []
     net = _Net()
     faces = False
+    begun = ""
     for number, line in enumerate(text.split("\n"), 1):
-        word, *cells = line.partition("#")[0].split() or [""]
+        line = begun + line.partition("#")[0].rstrip()
+        begun = line[:-1] + " " if line.endswith("\\") else ""  # it goes on
+        word, *cells = ("" if begun else line).split() or [""]
         try:
             if word == "v":
                 rows.append(_vertex(cells))

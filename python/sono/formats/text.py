@@ -17,7 +17,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import columns
+from sono.formats import columns, layouts
 from sono.formats.vertices import Chain, FormatError, Raw, numbers
 
 
@@ -40,7 +40,7 @@ def read(text: str, name: str) -> list[Raw]:
             except ValueError:
                 if not rows and not chains:
                     return columns.read(text, name)
-                raise FormatError.at(name, number, columns.wrong(data)) from None
+                raise FormatError.at(name, number, layouts.wrong(data)) from None
             rows.append((x, y, z))
             lines.append(number)
         elif "#" in line:
@@ -66,4 +66,4 @@ def _cells(data: str) -> list[str]:
         return data.split()
     if data.count(",") == 2:  # twice as fast as the general way, for the common case; float() strips
         return data.split(",")
-    return columns.cells_of(data)
+    return layouts.cells_of(data)

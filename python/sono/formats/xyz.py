@@ -19,7 +19,9 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.columns import Layout, Parts
+from sono.formats.columns import Parts
+from sono.formats.doubts import gaps
+from sono.formats.layouts import Layout
 from sono.formats.vertices import Chain, FormatError, Raw, shown
 
 _COUNT = re.compile(r"\s*\d+\s*(\n|$)")
@@ -79,11 +81,21 @@ def _frame(lines: Sequence[str], name: str, first: int, key: str) -> Raw:
             parts.add(layout, line.split(), number)
         except ValueError as error:
             raise FormatError.at(name, number, str(error)) from None
-    chains = parts.chains(None)
+    chains, notes = parts.chains(None), list[str]()
     if len(chains) == 1 and (sizes := _SIZES.search(comment)):
         chains = _apart(chains, [int(size[:18]) for size in sizes[1].split()], name, first + 1)
+    else:
+        notes = [_doubt(chain, place, name) for chain in chains for place in gaps(np.array(chain.rows))]
     said = re.sub(r"\\(.)", r"\1", ours[1]).split(BETWEEN) if ours else [comment.strip()]
-    return Raw(chains, key, comments=[line for line in said if line])
+    return Raw(chains, key, notes, [line for line in said if line])
+
+
+def _doubt(chain: Chain, place: int, name: str) -> str:
+    """Tell of an edge that hardly is one."""
+    cure = 'the comment can say `components="60 60"` or `Properties=molecule:I:1:pos:R:3`'
+    return (
+        f"{name}:{chain.lines[place]}: a far longer edge follows; if another component begins there, {cure}"
+    )
 
 
 def _layout(comment: str, cells: Sequence[str]) -> Layout:
