@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import jsons, npy, npz, obj, text, vect, xyz
+from sono.formats import jsons, lammps, lammpstrj, npy, npz, obj, text, vect, xyz
 from sono.formats.closing import Close
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
@@ -83,12 +83,14 @@ READERS: dict[str, Reader] = {
     "xyz": xyz,
     "obj": obj,
     "json": jsons,
+    "lammpstrj": lammpstrj,
+    "lammps": lammps,
     "text": text,  # the last one, as it takes any text for its own
 }
 
 BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz}
 
-SINGLE = {"text", "vect", "obj", "json", "npy", "npz"}
+SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps"}
 """The formats whose files hold one curve; into others a batch looks before it begins."""
 
 WRITERS: dict[str, Writer] = {
@@ -98,6 +100,7 @@ WRITERS: dict[str, Writer] = {
     "json": jsons,
     "npy": npy,
     "npz": npz,
+    "lammps": lammps,
     "text": text,
 }
 
@@ -117,6 +120,9 @@ SUFFIXES = {
     ".json": "json",
     ".npy": "npy",
     ".npz": "npz",
+    ".lammpstrj": "lammpstrj",
+    ".dump": "lammpstrj",
+    ".data": "lammps",
 }
 """The format of a file by its suffix."""
 

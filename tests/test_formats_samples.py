@@ -1,0 +1,26 @@
+"""The samples of simulations, molecules and ideal knots: what each holds, and of which type it is."""
+
+from pathlib import Path
+
+import pytest
+from knots import hopf, trefoil
+
+from sono import formats
+from sono.invariants import fingerprint
+
+SAMPLES = Path(__file__).parent / "samples"
+TREFOIL, HOPF = [trefoil()], hopf()
+
+HOLD = {
+    "rings.lammpstrj": {"0": HOPF, "10000": HOPF},
+    "trefoil.data": {"": TREFOIL},
+}
+"""What is in each sample: curves of the same type, by key."""
+
+
+@pytest.mark.parametrize("name", HOLD)
+def test_samples_are_read(name: str) -> None:
+    curves = formats.read_all(SAMPLES / name)
+    assert {curve.key: fingerprint(curve.components) for curve in curves} == {
+        key: fingerprint(components) for key, components in HOLD[name].items()
+    }
