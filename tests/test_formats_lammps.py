@@ -350,6 +350,6 @@ def test_what_is_wrong_with_data_is_said_in_one_line(case: str) -> None:
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(("name", "content"), [("k.lammpstrj", DUMP), ("k.data", data(hopf()))])
 def test_damaged_files_raise_nothing_else(name: str, content: str) -> None:
-    for text in damaged(content):
+    for text in damaged(content, 150):
         with suppress(FormatError):
             read(text, name)

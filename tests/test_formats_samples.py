@@ -10,17 +10,20 @@ from sono.invariants import fingerprint
 
 SAMPLES = Path(__file__).parent / "samples"
 TREFOIL, HOPF = [trefoil()], hopf()
+MIRRORED = trefoil() * [1, 1, -1]
 
 HOLD = {
     "rings.lammpstrj": {"0": HOPF, "10000": HOPF},
     "trefoil.data": {"": TREFOIL},
+    "protein.pdb": {"A": TREFOIL, "B": [MIRRORED]},
+    "hopf.ent": {"1": HOPF, "2": HOPF},
 }
 """What is in each sample: curves of the same type, by key."""
 
 
 @pytest.mark.parametrize("name", HOLD)
 def test_samples_are_read(name: str) -> None:
-    curves = formats.read_all(SAMPLES / name)
+    curves = formats.read_all(SAMPLES / name, close="direct")
     assert {curve.key: fingerprint(curve.components) for curve in curves} == {
         key: fingerprint(components) for key, components in HOLD[name].items()
     }

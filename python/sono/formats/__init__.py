@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import jsons, lammps, lammpstrj, npy, npz, obj, text, vect, xyz
+from sono.formats import jsons, lammps, lammpstrj, npy, npz, obj, pdb, text, vect, xyz
 from sono.formats.closing import Close
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
@@ -85,6 +85,7 @@ READERS: dict[str, Reader] = {
     "json": jsons,
     "lammpstrj": lammpstrj,
     "lammps": lammps,
+    "pdb": pdb,
     "text": text,  # the last one, as it takes any text for its own
 }
 
@@ -101,6 +102,7 @@ WRITERS: dict[str, Writer] = {
     "npy": npy,
     "npz": npz,
     "lammps": lammps,
+    "pdb": pdb,
     "text": text,
 }
 
@@ -123,6 +125,8 @@ SUFFIXES = {
     ".lammpstrj": "lammpstrj",
     ".dump": "lammpstrj",
     ".data": "lammps",
+    ".pdb": "pdb",
+    ".ent": "pdb",
 }
 """The format of a file by its suffix."""
 
