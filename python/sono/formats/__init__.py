@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import jsons, lammps, lammpstrj, npy, npz, obj, pdb, text, vect, xyz
+from sono.formats import jsons, lammps, lammpstrj, mmcif, npy, npz, obj, pdb, text, vect, xyz
 from sono.formats.closing import Close
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
@@ -86,6 +86,7 @@ READERS: dict[str, Reader] = {
     "lammpstrj": lammpstrj,
     "lammps": lammps,
     "pdb": pdb,
+    "mmcif": mmcif,
     "text": text,  # the last one, as it takes any text for its own
 }
 
@@ -127,6 +128,8 @@ SUFFIXES = {
     ".data": "lammps",
     ".pdb": "pdb",
     ".ent": "pdb",
+    ".cif": "mmcif",
+    ".mmcif": "mmcif",
 }
 """The format of a file by its suffix."""
 
