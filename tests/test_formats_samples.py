@@ -17,6 +17,8 @@ HOLD = {
     "trefoil.data": {"": TREFOIL},
     "protein.pdb": {"A": TREFOIL, "B": [MIRRORED]},
     "hopf.ent": {"1": HOPF, "2": HOPF},
+    "ideal.txt": {"3:1:1": TREFOIL, "L2a1": HOPF},
+    "knot.3_1.fseries": {"": TREFOIL},
     "knot.cif": {"A": TREFOIL, "B": [MIRRORED]},
 }
 """What is in each sample: curves of the same type, by key."""

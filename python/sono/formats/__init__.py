@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import jsons, lammps, lammpstrj, mmcif, npy, npz, obj, pdb, text, vect, xyz
+from sono.formats import fseries, ideal, jsons, lammps, lammpstrj, mmcif, npy, npz, obj, pdb, text, vect, xyz
 from sono.formats.closing import Close
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
@@ -87,12 +87,14 @@ READERS: dict[str, Reader] = {
     "lammps": lammps,
     "pdb": pdb,
     "mmcif": mmcif,
+    "ideal": ideal,
+    "fseries": fseries,
     "text": text,  # the last one, as it takes any text for its own
 }
 
 BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz}
 
-SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps"}
+SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps", "fseries"}
 """The formats whose files hold one curve; into others a batch looks before it begins."""
 
 WRITERS: dict[str, Writer] = {
@@ -130,6 +132,7 @@ SUFFIXES = {
     ".ent": "pdb",
     ".cif": "mmcif",
     ".mmcif": "mmcif",
+    ".fseries": "fseries",
 }
 """The format of a file by its suffix."""
 
