@@ -32,3 +32,11 @@ def test_samples_are_read(name: str) -> None:
     assert {curve.key: fingerprint(curve.components) for curve in curves} == {
         key: fingerprint(components) for key, components in HOLD[name].items()
     }
+
+
+@pytest.mark.parametrize("name", HOLD)
+def test_samples_are_recognised_by_their_content(name: str, tmp_path: Path) -> None:
+    if name.endswith(".cif"):
+        pytest.importorskip("gemmi")
+    (tmp_path / "k.txt").write_bytes((SAMPLES / name).read_bytes())
+    assert [curve.key for curve in formats.read_all(tmp_path / "k.txt", close="direct")] == list(HOLD[name])

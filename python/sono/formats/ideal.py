@@ -32,7 +32,8 @@ _PAIR = re.compile(r"(\w+)\s*=\s*(?:\"([^\"]*)\"|([^\s\"/]+))")
 
 def recognises(text: str) -> bool:
     """Tell whether the text is one of tags, with coefficients among them."""
-    return text.lstrip().startswith("<") and re.search(r"<Coeff\b", text[:20_000], re.IGNORECASE) is not None
+    tags = re.match(r"\s*<", text)
+    return tags is not None and re.search(r"<Coeff\b", text[:20_000], re.IGNORECASE) is not None
 
 
 def read(text: str, name: str) -> list[Raw]:

@@ -18,6 +18,7 @@ by its image flags, by the unwrapped coordinates, or else every atom to its imag
 Source: the documentation of LAMMPS, commands `dump` and `Howto_triclinic`.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -37,7 +38,7 @@ FLAGS = ("ix", "iy", "iz")
 
 def recognises(text: str) -> bool:
     """Tell whether the text begins with a block of a dump."""
-    return text.lstrip().startswith("ITEM:")
+    return re.match(r"\s*ITEM:", text) is not None
 
 
 def read(text: str, name: str) -> list[Raw]:

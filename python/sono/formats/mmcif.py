@@ -36,8 +36,7 @@ ATOM = [
 
 def recognises(text: str) -> bool:
     """Tell whether the first word that is not in a comment begins a block of data."""
-    lines = (line.split(maxsplit=1) for line in text.split("\n") if not line.startswith("#"))
-    return next((words[0].lower() for words in lines if words), "").startswith("data_")
+    return re.match(r"(?:\s|#[^\n]*\n)*data_", text, re.IGNORECASE) is not None
 
 
 def read(text: str, name: str) -> list[Raw]:
