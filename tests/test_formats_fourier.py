@@ -9,7 +9,7 @@ from knots import Floats, damaged, hopf, trefoil
 
 from sono import formats, measure
 from sono.formats import FormatError, VertexFile
-from sono.formats.fourier import sampled
+from sono.formats.fourier import polygons
 from sono.formats.vertices import Raw
 from sono.invariants import fingerprint
 
@@ -117,7 +117,7 @@ def test_fine_detail_is_sampled_finely() -> None:
     """A long knot wound 200 times round a trefoil needs more points than the trefoil."""
     t = 2 * np.pi * np.arange(4096) / 4096
     wound = trefoil(4096) + 0.3 * np.column_stack([np.cos(200 * t), np.sin(200 * t), np.zeros_like(t)])
-    (curve,) = sampled([series(wound, 201)])
+    (curve,) = polygons([series(wound, 201)])
     assert len(curve) > 1000
     assert fingerprint([curve]) == fingerprint([wound])
     assert fingerprint([curve]) == fingerprint([trefoil()])
@@ -134,7 +134,7 @@ def test_curves_that_meet_themselves_are_refused(shape: str) -> None:
         "huge": [1e200 * trefoil(64)],
     }
     with pytest.raises(ValueError, match="the curve meets itself, or nearly"):
-        sampled([series(curve, 5) for curve in curves[shape]])
+        polygons([series(curve, 5) for curve in curves[shape]])
 
 
 IDEAL = data(knot(TREFOIL), link(HOPF))

@@ -19,6 +19,9 @@ HOLD = {
     "hopf.ent": {"1": HOPF, "2": HOPF},
     "ideal.txt": {"3:1:1": TREFOIL, "L2a1": HOPF},
     "knot.3_1.fseries": {"": TREFOIL},
+    "trefoil.pkf": {"": TREFOIL},
+    "hopf.knotplot": {"": HOPF},
+    "hopf.coords.txt": {"": HOPF},
     "knot.cif": {"A": TREFOIL, "B": [MIRRORED]},
 }
 """What is in each sample: curves of the same type, by key."""

@@ -18,7 +18,24 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import fseries, ideal, jsons, lammps, lammpstrj, mmcif, npy, npz, obj, pdb, text, vect, xyz
+from sono.formats import (
+    coords,
+    fseries,
+    ideal,
+    jsons,
+    knotplot,
+    lammps,
+    lammpstrj,
+    mmcif,
+    npy,
+    npz,
+    obj,
+    pdb,
+    pkf,
+    text,
+    vect,
+    xyz,
+)
 from sono.formats.closing import Close
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
@@ -89,12 +106,14 @@ READERS: dict[str, Reader] = {
     "mmcif": mmcif,
     "ideal": ideal,
     "fseries": fseries,
+    "pkf": pkf,
+    "coords": coords,
     "text": text,  # the last one, as it takes any text for its own
 }
 
-BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz}
+BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz, "knotplot": knotplot}
 
-SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps", "fseries"}
+SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps", "fseries", "pkf", "coords", "knotplot"}
 """The formats whose files hold one curve; into others a batch looks before it begins."""
 
 WRITERS: dict[str, Writer] = {
@@ -133,6 +152,7 @@ SUFFIXES = {
     ".cif": "mmcif",
     ".mmcif": "mmcif",
     ".fseries": "fseries",
+    ".pkf": "pkf",
 }
 """The format of a file by its suffix."""
 

@@ -7,12 +7,12 @@
 
 The row j, from 1, has the coefficients of cos(jt) and sin(jt) in x, then in y and in z; a row of only three
 numbers ahead of them is the middle of the knot. Lines that begin with % are comments. How finely the series
-is sampled is said in `fourier`.
+is sampled is said in `sampling`.
 """
 
 import numpy as np
 
-from sono.formats.fourier import sampled
+from sono.formats.fourier import polygons
 from sono.formats.vertices import Chain, FormatError, Raw, not_a_number, numbers, shown
 
 
@@ -38,7 +38,7 @@ def read(text: str, name: str) -> list[Raw]:
     table = np.array([row for _, row in rows])
     a, b = np.vstack([middle, table[:, ::2]]), np.vstack([np.zeros(3), table[:, 1::2]])
     try:
-        (curve,) = sampled([(a, b)])
+        (curve,) = polygons([(a, b)])
     except ValueError as error:
         raise FormatError.at(name, rows[0][0], f"{error}; correct the series that begins here") from None
     note = f"{name}: the Fourier series of {len(rows)} harmonics was sampled at {len(curve)} points"

@@ -8,7 +8,7 @@
 The row I has the vectors A and B of A cos(It) + B sin(It), but of A[0] half is taken. A link holds a <STRING>
 or <Component> for each component. Every knot of a file is a curve with its Id as the key. L is its length and
 D the diameter of the rope, so that the ropelength over the radius is 2 L/D; nothing is scaled. How finely the
-series is sampled is said in `fourier`. Source: the Knot Atlas, "Ideal knots".
+series is sampled is said in `sampling`. Source: the Knot Atlas, "Ideal knots".
 """
 
 import re
@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sono.formats.fourier import Floats, Series, sampled
+from sono.formats.fourier import Floats, Series, polygons
 from sono.formats.vertices import Chain, FormatError, Raw, numbers, shown
 
 HIGHEST = 4096
@@ -133,7 +133,7 @@ class _Knot:
             if not harmonics.keys() - {0}:
                 raise tag.error(f"this {tag.name} has no Coeff above 0; a closed curve needs one")
         try:
-            curves = sampled([_series(harmonics) for _, harmonics in self.parts])
+            curves = polygons([_series(harmonics) for _, harmonics in self.parts])
         except ValueError as error:
             raise self.tag.error(f"{error}; correct the series of this {self.tag.name}") from None
         lines = [tag.line for tag, _ in self.parts]
