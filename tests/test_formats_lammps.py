@@ -103,6 +103,10 @@ def test_frames_are_curves() -> None:
     assert [curve.key for curve in read(two + frame([trefoil()], step=0))] == ["1", "2", "3"]
 
 
+def test_empty_lines_between_frames_are_read_over() -> None:
+    assert len(read(frame([trefoil()], step=0) + "\n \n" + frame([trefoil()], step=5) + "\n")) == 2
+
+
 def test_units_and_times_are_read_over() -> None:
     (curve,) = read("ITEM: UNITS\nlj\nITEM: TIME\n0.5\n" + frame([trefoil()]))
     assert same(curve, [trefoil()])
@@ -144,10 +148,12 @@ def test_a_ring_round_the_box_is_refused() -> None:
 
 
 def test_two_rings_without_molecules_are_refused() -> None:
-    far = [hopf(60)[0], hopf(60)[1] + 20]
-    with pytest.raises(FormatError, match="if a second chain begins here, give the column mol"):
-        read(frame(far, "id xu yu zu"))
-    assert len(read(frame(far, "id mol xu yu zu"))[0].components) == 2
+    for rings in ([hopf(60)[0], hopf(60)[1] + 20], hopf(24), hopf(24)[::-1]):
+        with pytest.raises(FormatError, match="if a second chain begins here, give each one its own mol"):
+            read(frame(rings, "id xu yu zu"))
+        with pytest.raises(FormatError, match="if a second chain begins here, give each one its own mol"):
+            read(re.sub(r"(?m)^(\d+) 2 ", r"\1 1 ", frame(rings, "id mol xu yu zu")))
+        assert len(read(frame(rings, "id mol xu yu zu"))[0].components) == 2
 
 
 def test_solvent_is_left_out_and_gaps_are_told() -> None:
@@ -288,6 +294,13 @@ def test_styles_of_atoms(style: str, columns: str) -> None:
     (curve,) = read(section(trefoil(), style, columns), "k.data")
     assert same(curve, [trefoil()])
     assert "unwrapped" in curve.doubts()[0]
+
+
+def test_flags_of_zero_that_cannot_be_right_are_not_believed() -> None:
+    content = section(trefoil(), " # bond", "{id} 1 1 {xyz} 0 0 0")
+    (curve,) = read(content, "k.data")
+    assert same(curve, [trefoil()])
+    assert "nearest to the one before" in curve.doubts()[0]
 
 
 def test_chains_follow_the_bonds() -> None:

@@ -155,18 +155,37 @@ def test_missing_residues_are_named() -> None:
 
 def test_a_second_chain_in_disguise_is_refused() -> None:
     with pytest.raises(
-        FormatError, match=r"^k\.pdb:61: an edge of \d+ times the median one leads here, from line 60"
+        FormatError, match=r"^k\.pdb:61: an edge of [\d.]+ times the median one leads here, from line 60"
     ):
         read(trace(KNOT) + trace(KNOT + 90))
     beads = trace(KNOT, name="C") + trace(KNOT + 5, 61, name="C")
     bonds = "".join(f"CONECT{i:>5}{i + 1 if i % 60 else i - 59:>5}\n" for i in range(1, 121))
-    with pytest.raises(
-        FormatError, match=r"^k\.pdb:61: no CONECT joins this atom, from line 60; end the chain"
-    ):
+    with pytest.raises(FormatError, match=r"^k\.pdb:61: no CONECT joins this atom, from line 60; put TER"):
         read(beads + bonds)
     assert (
         len(read(trace(KNOT, name="C") + "TER\n" + trace(KNOT + 5, 61, name="C") + bonds)[0].components) == 2
     )
+
+
+def test_rings_side_by_side_in_one_chain_are_refused() -> None:
+    for name in ("CA", "C"):
+        two = trace(hopf()[0], name=name) + trace(hopf()[1], 25, name=name)
+        with pytest.raises(
+            FormatError, match=r"^k\.pdb:25: an edge of [\d.]+ times the median one leads here"
+        ):
+            read(two)
+    again = trace(KNOT[:20]) + trace(KNOT[21:50])
+    with pytest.raises(
+        FormatError, match=r"^k\.pdb:21: the numbers of residues start again here, from line 20"
+    ):
+        read(again)
+
+
+@pytest.mark.parametrize("end", ["END\n", "ENDMDL\n"])
+def test_frames_that_are_only_ended_are_models(end: str) -> None:
+    found = read((trace(KNOT) + end) * 3)
+    assert [curve.key for curve in found] == ["1", "2", "3"]
+    assert all(close(curve, [KNOT]) for curve in found)
 
 
 def test_bonds_that_are_all_there_leave_open_what_they_do_not_close() -> None:
@@ -278,8 +297,8 @@ def malformed() -> Iterator[tuple[str, str, str]]:
     )
     yield "two atoms", "".join(LINES[:2]), ":1: .* too few vertices: 2"
     yield "water", atom(1, [0, 0, 0], "O", "HOH", record="HETATM"), ":1: .* too few vertices: 1"
-    yield "a stray atom", changed(30, 30, "9000.000"), r":3\d: an edge of \d+ times the median one"
-    yield "wrapped", changed(30, 30, "-900.000"), r":3\d: an edge of \d+ times the median one"
+    yield "a stray atom", changed(30, 30, "9000.000"), r":3\d: an edge of [\d.]+ times the median one"
+    yield "wrapped", changed(30, 30, "-900.000"), r":3\d: an edge of [\d.]+ times the median one"
 
 
 @pytest.mark.parametrize(("content", "message"), [pytest.param(b, c, id=a) for a, b, c in malformed()])

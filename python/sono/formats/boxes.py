@@ -81,9 +81,19 @@ def refuse_winding(box: Box, rows: Floats, name: str, lines: NDArray[np.int64]) 
         )
 
 
-def long_edge(rows: Floats) -> tuple[int, float] | None:
-    """Give the first edge along a chain (n, 3) that stands out, and its length over the median one."""
-    lengths = np.linalg.norm(np.diff(rows, axis=0), axis=1)
-    median = np.median(lengths) if len(lengths) else 0.0
-    edge = int((lengths > BREAK * median).argmax()) if len(lengths) else 0
-    return (edge, float(lengths[edge] / median)) if median and lengths[edge] > BREAK * median else None
+def second_chain(rows: Floats) -> tuple[int, float] | None:
+    """Give the edge along a chain (n, 3) after which another one seems to begin, and its length in medians.
+
+    It is so long that it hardly joins neighbours, or it is rather long where the chain so far has come back
+    to its beginning, to which all of it does not come back.
+    """
+    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
+    if len(steps) < 3:
+        return None
+    near = LONGEST * np.median(steps)
+    back = np.linalg.norm(rows[:-1] - rows[0], axis=1) <= near
+    back[:2] = False
+    ring = back & (steps > near) & (np.linalg.norm(rows[-1] - rows[0]) > near)
+    found = ring | (steps > BREAK * np.median(steps))
+    edge = int(found.argmax())
+    return (edge, float(steps[edge] / np.median(steps))) if found[edge] else None

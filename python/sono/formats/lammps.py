@@ -75,10 +75,10 @@ def read(text: str, name: str) -> list[Raw]:
     bonds = _bonds(sections.get("Bonds"), atoms)
     groups, closed, notes = _by_order(atoms) if bonds is None else _by_bonds(bonds, atoms)
     pairs = [atoms.chain(group, box, ring) for group, ring in zip(groups, closed, strict=True)]
-    if bonds is None and atoms.molecules is None:
-        atoms.refuse_breaks(pairs[0][0])
+    for chain, _ in pairs if bonds is None else ():
+        atoms.refuse_breaks(chain)
     if flagged or any(moved for _, moved in pairs):
-        notes = [BY_FLAGS if flagged else BY_NEAREST, *notes]
+        notes = [BY_NEAREST if any(moved for _, moved in pairs) else BY_FLAGS, *notes]
     return [Raw([chain for chain, _ in pairs], "", [f"{name}: {note}" for note in notes])]
 
 

@@ -71,14 +71,23 @@ class _Block:
 
 
 def _blocks(text: str, name: str) -> Iterator[_Block]:
-    lines = text.rstrip().split("\n")
+    lines = [line.rstrip() for line in text.rstrip().split("\n")]
     starts = [i for i, line in enumerate(lines) if line.startswith("ITEM:")]
     if not starts or "".join(lines[: starts[0]]).strip():
         raise FormatError.at(
             name, 1, f"{shown(lines[0])} is no ITEM:, with which each block of a dump begins"
         )
     for start, end in zip(starts, [*starts[1:], len(lines)], strict=True):
-        yield _Block(name, lines[start].removeprefix("ITEM:").strip(), lines[start + 1 : end], start + 1)
+        yield _Block(
+            name, lines[start].removeprefix("ITEM:").strip(), _filled(lines[start + 1 : end]), start + 1
+        )
+
+
+def _filled(rows: list[str]) -> list[str]:
+    """Leave out empty rows at the end."""
+    while rows and not rows[-1]:
+        rows.pop()
+    return rows
 
 
 def _frames(text: str, name: str) -> Iterator[tuple[str, dict[str, _Block]]]:
@@ -119,8 +128,8 @@ def _curve(frame: dict[str, _Block]) -> Raw:
     atoms, notes = _atoms(frame["ATOMS"], box)
     groups, left = atoms.by_molecule()
     pairs = [atoms.chain(group, box, None) for group in groups]
-    if atoms.molecules is None:
-        atoms.refuse_breaks(pairs[0][0])
+    for chain, _ in pairs:
+        atoms.refuse_breaks(chain)
     if any(moved for _, moved in pairs):
         notes = [BY_NEAREST]
     notes = [*notes, *left, *gaps([atoms.ids[group] for group in groups])]

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sono.formats.boxes import long_edge
+from sono.formats.boxes import second_chain
 from sono.formats.doubts import LONGEST, closing_edge
 from sono.formats.vertices import SHOWN, Chain, FormatError, Raw
 
@@ -127,20 +127,31 @@ class _Trace:
         after, why = -1, ""
         if self._spelled:
             after, why = (-1, "") if all(joined) else (joined.index(False), "no CONECT joins this atom")
-        elif (found := long_edge(self._rows)) and not self._jumps(found[0]):
-            after, why = found[0], f"an edge of {found[1]:.0f} times the median one leads here"
+        elif (found := second_chain(self._rows)) and not self._jumps(found[0]):
+            after, why = found[0], f"an edge of {found[1]:.1f} times the median one leads here"
+        elif restarts := self._restarts():
+            after, why = restarts[0], "the numbers of residues start again here"
         if why:
             before, here = self.atoms[after : after + 2]
             raise FormatError.at(
                 self._name,
                 here.line,
-                f"{why}, from line {before.line}; end the chain before with TER, or give this one another id",
+                f"{why}, from line {before.line}; put TER ahead of a second chain, or unwrap the first",
             )
 
     def _jumps(self, edge: int) -> bool:
         """Tell whether residues were left out between the ends of an edge, by their numbers."""
         before, after = (_number(atom) for atom in self.atoms[edge : edge + 2])
         return before is not None and after is not None and after > before + 1
+
+    def _restarts(self) -> list[int]:
+        """Give the edges that are rather long and after which the numbers of residues are lower."""
+        far = self._lengths[:-1] > LONGEST * np.median(self._lengths)
+        numbers = [_number(atom) for atom in self.atoms]
+        pairs = [(i, numbers[i], numbers[i + 1]) for i in np.flatnonzero(far).tolist()]
+        return [
+            i for i, before, after in pairs if before is not None and after is not None and after < before
+        ]
 
     def _ends_bonded(self) -> bool:
         first, last = self._places[0], self._places[-1]

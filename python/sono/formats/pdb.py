@@ -34,7 +34,7 @@ CHAINS = ascii_uppercase + ascii_lowercase + digits
 THIN = 0.005
 """A curve whose rope has a smaller radius might change its type when its coordinates are rounded."""
 
-_RECORD = re.compile(r"HETATM|CONECT|(ATOM|MODEL|TER|LINK)(?![A-Z])")
+_RECORD = re.compile(r"HETATM|CONECT|(ATOM|MODEL|ENDMDL|END|TER|LINK)(?![A-Z])")
 _FIRST = re.compile(r"(ATOM|HEADER|MODEL|REMARK) |HETATM|CRYST1")
 _NUMBER = re.compile(r"-?\w+")
 _DECIMAL = re.compile(r"[+-]?\d*\.\d*(e[+-]?\d+)?|[+-]?(nan|inf)", re.IGNORECASE)
@@ -50,12 +50,11 @@ def read(text: str, name: str) -> list[Raw]:
     file = _File(name)
     for number, line in enumerate(text.split("\n"), 1):
         file.take(line, number)
-    models = [model for model in file.models if model.atoms]
-    if not models:
+    if not file.models:
         raise FormatError.at(
             name, 1, "the file holds no ATOM or HETATM; a PDB file begins each atom's line so"
         )
-    return curves([Model(model.key, model.atoms, file.bonds(model)) for model in models], name)
+    return curves([Model(model.key, model.atoms, file.bonds(model)) for model in file.models], name)
 
 
 @dataclass
@@ -74,21 +73,28 @@ class _File:
     def __init__(self, name: str) -> None:
         self._name = name
         self._part = 0
+        self._ended = True
+        self._key = ""
         self._links: list[tuple[tuple[str, str, str], tuple[str, str, str]]] = []
         self._connected: list[str] = []
-        self.models = [_Found("1")]
+        self.models: list[_Found] = []
 
     def take(self, line: str, number: int) -> None:
         found = _RECORD.match(line)
         record = found[0] if found else ""
         if record in ("ATOM", "HETATM"):
             serial, atom = self._atom(line, number)
+            if self._ended:
+                self.models.append(_Found(self._key or str(len(self.models) + 1)))
+            self._ended = False
             model = self.models[-1]
             model.serials.setdefault(serial, len(model.atoms))
             model.sites.setdefault((atom.chain, atom.number, atom.name), len(model.atoms))
             model.atoms.append(atom)
         elif record == "MODEL":
-            self.models.append(_Found(line[5:].strip() or str(len(self.models))))
+            self._ended, self._key = True, line[5:].strip()
+        elif record in ("ENDMDL", "END"):  # some programs end frames, but begin none
+            self._ended, self._key = True, ""
         elif record == "TER":
             self._part += 1
         elif record == "CONECT":

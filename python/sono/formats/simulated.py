@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.boxes import Box, long_edge, refuse_winding, unwrapped
+from sono.formats.boxes import Box, refuse_winding, second_chain, unwrapped
+from sono.formats.doubts import jumps
 from sono.formats.vertices import SHOWN, Chain, FormatError, not_a_number, numbers, shown
 
 Floats = NDArray[np.float64]
@@ -62,19 +63,19 @@ class Atoms:
         rows, lines = self.rows[places], self.lines[places]
         if box is None:
             return Chain(rows, lines.tolist(), closed), False
-        whole = rows if self.images else unwrapped(box, rows, self.name, lines)
+        whole = rows if self.images and not jumps([rows])[1] else unwrapped(box, rows, self.name, lines)
         refuse_winding(box, whole, self.name, lines)
         return Chain(whole, lines.tolist(), closed), whole is not rows
 
     def refuse_breaks(self, chain: Chain) -> None:
-        """Refuse a chain that nothing but the ids holds together when one edge stands out."""
-        if found := long_edge(chain.rows):
+        """Refuse a chain that only the order of ids holds together where another seems to begin."""
+        if found := second_chain(chain.rows):
             edge, medians = found
             raise FormatError.at(
                 self.name,
                 chain.lines[edge + 1],
-                f"the edge to this atom, from line {chain.lines[edge]}, is {medians:.0f} times the median "
-                "one; if a second chain begins here, give the column mol",
+                f"the edge to this atom, from line {chain.lines[edge]}, is {medians:.1f} times the median "
+                "one; if a second chain begins here, give each one its own mol",
             )
 
 
