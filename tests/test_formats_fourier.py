@@ -110,6 +110,7 @@ def test_a_knot_of_fremlin() -> None:
         assert np.allclose(curve.components[0], trefoil(512), atol=2e-5)
     (moved,) = read(" % Knot\n % shortened\n   1.0  2.0  3.0\n" + rows(*TREFOIL) + "\n% the end\n\n", "k.txt")
     assert np.allclose(moved.components[0], trefoil(512) + np.array([1, 2, 3]), atol=2e-5)
+    assert moved.comments == ["Knot", "shortened", "the end"]
     assert moved.doubts() == ["k.txt: the Fourier series of 5 harmonics was sampled at 512 points"]
 
 

@@ -42,6 +42,7 @@ def test_arcs_of_a_circle_are_on_it() -> None:
     assert np.allclose(np.linalg.norm(curve.components[0], axis=1), 3)
     assert measure(curve.components).l_p == pytest.approx(2 * np.pi, rel=0.02)
     assert curve.where(0, -1) == "k.pkf:19"
+    assert curve.comments == ["a knot"]
 
 
 def test_biarcs_of_a_trefoil() -> None:
@@ -185,6 +186,7 @@ def test_knotplot(name: bytes, kind: str) -> None:
         True,
         True,
     ]
+    assert curve.comments == ["a link"]
     assert raw(knotplot(hopf(), closed=0)).chains[0].closed is False
     # One component in two fields, and without the field that begins it.
     halves = field(b"LOCD", trefoil()[:20].astype(">f8").tobytes()) + field(

@@ -263,6 +263,7 @@ def test_data_and_their_comments(tmp_path: Path) -> None:
     curve = formats.read(tmp_path / "k.data")
     assert [c.tobytes() for c in curve.components] == [c.tobytes() for c in hopf()]
     assert curve.doubts() == []
+    assert curve.comments == ["a: tight", "second"]
 
 
 def section(rows: Floats, style: str, columns: str, wrap: bool = True) -> str:
@@ -328,6 +329,7 @@ MALFORMED_DATA = {
     "plain rows": ("0 0 0\n1 0 0\n0 1 0\n", r":1: there is no section Atoms"),
     "no atoms": (DATA.replace("Atoms # bond", "Velocities"), r":3: 60 atoms are promised, the file has 0"),
     "no rows": ("t\n\nAtoms # bond\n\n", r":3: the section has no rows"),
+    "twice": (DATA + DATA, r":\d+: there is a second section Masses; leave one out"),
     "too few": (DATA.replace("60 atoms", "61 atoms"), r":3: 61 atoms are promised, the file has 60"),
     "too few bonds": (DATA.replace("60 bonds", "9 bonds"), r":4: 9 bonds are promised, the file has 60"),
     "cut off": (DATA[: len(DATA) // 2], r":3: 60 atoms are promised, the file has \d+"),

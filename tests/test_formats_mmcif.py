@@ -135,8 +135,8 @@ def malformed() -> Iterator[tuple[str, str, str]]:
         FILE.replace("_entry.id K\n", "_entry.id K\n_entry.id K\n", 1) + FILE,
         r":\d+: this is no",
     )
-    yield "a word", FILE.replace("15.600", "left"), ":23: 'left .*' are no three numbers x y z"
-    yield "unknown", FILE.replace("15.600", "?"), ":23: ' .*' are no three numbers x y z"
+    yield "a word", FILE.replace("15.600", "left"), ":23: 'left .*' are no three numbers; x y z should"
+    yield "unknown", FILE.replace("15.600", "?"), ":23: ' .*' are no three numbers; x y z should"
     yield "not finite", FILE.replace("15.600", "nan"), ":23: a coordinate is not finite"
     yield "two atoms", file(rows(KNOT[:2])), ":23: .* too few vertices: 2"
     yield "a stray atom", FILE.replace("15.600", "1560.0"), r":\d+: an edge of "

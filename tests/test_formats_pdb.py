@@ -217,6 +217,7 @@ def test_what_is_written_is_read() -> None:
         assert close(curve, components)
         assert fingerprint(curve.components) == fingerprint(components)
         assert curve.doubts() == []
+        assert curve.comments == ["a: tight", "b"]
         assert content.startswith("REMARK 999 a: tight\nREMARK 999 b\nATOM      1  CA  GLY A   1 ")
         assert {len(line) for line in content.splitlines() if line.startswith("ATOM")} == {78}
 

@@ -42,7 +42,10 @@ def read(text: str, name: str) -> list[Raw]:
     except ValueError as error:
         raise FormatError.at(name, rows[0][0], f"{error}; correct the series that begins here") from None
     note = f"{name}: the Fourier series of {len(rows)} harmonics was sampled at {len(curve)} points"
-    return [Raw([Chain(curve, [rows[0][0]] * len(curve))], "", [note])]
+    comments = [
+        line.strip().removeprefix("%").strip() for line in text.split("\n") if "%" in line.lstrip()[:1]
+    ]
+    return [Raw([Chain(curve, [rows[0][0]] * len(curve))], notes=[note], comments=comments)]
 
 
 def _rows(text: str, name: str) -> list[tuple[int, list[float]]]:

@@ -138,9 +138,8 @@ class _Knot:
             raise self.tag.error(f"{error}; correct the series of this {self.tag.name}") from None
         lines = [tag.line for tag, _ in self.parts]
         chains = [Chain(rows, [line] * len(rows)) for rows, line in zip(curves, lines, strict=True)]
-        return Raw(
-            chains, key, [f"{self.tag.file}:{self.tag.line}: {note}" for note in self._notes(len(curves[0]))]
-        )
+        notes = [f"{self.tag.file}:{self.tag.line}: {note}" for note in self._notes(len(curves[0]))]
+        return Raw(chains, key, notes, [self.tag.values["id"].strip()])
 
     def _notes(self, n: int) -> list[str]:
         lengths = [tag.number("l") for tag, _ in self.parts]

@@ -23,10 +23,13 @@ def read(data: bytes, name: str) -> list[Raw]:
     """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
     parts: list[list[Floats]] = []
     closed: list[bool] = []
+    comments: list[str] = []
     for field, content in _fields(data, name):
         if field == b"comp" or (not parts and field.startswith(b"LOC")):
             parts.append([])
             closed.append(True)
+        if field == b"NAME":
+            comments.append(content.decode("utf-8", "replace").strip())
         if field == b"Attr" and closed:
             closed[-1] = bool(content[-1] & 1)
         if field.startswith(b"LOC"):
@@ -38,7 +41,7 @@ def read(data: bytes, name: str) -> list[Raw]:
     ]
     if not chains:
         raise FormatError.at(name, 1, "the file holds no coordinates; save the knot in KnotPlot once more")
-    return [Raw(chains)]
+    return [Raw(chains, comments=comments)]
 
 
 def _fields(data: bytes, name: str) -> Iterator[tuple[bytes, bytes]]:

@@ -79,7 +79,8 @@ def read(text: str, name: str) -> list[Raw]:
         atoms.refuse_breaks(chain)
     if flagged or any(moved for _, moved in pairs):
         notes = [BY_NEAREST if any(moved for _, moved in pairs) else BY_FLAGS, *notes]
-    return [Raw([chain for chain, _ in pairs], "", [f"{name}: {note}" for note in notes])]
+    told = [f"{name}: {note}" for note in notes]
+    return [Raw([chain for chain, _ in pairs], notes=told, comments=_comments(text, head))]
 
 
 def _by_order(atoms: Atoms) -> tuple[list[Ints], Sequence[bool | None], list[str]]:
@@ -126,6 +127,8 @@ def _sections(text: str, name: str) -> tuple[list[tuple[int, str]], dict[str, _S
     for number, line in list(enumerate(text.split("\n"), 1))[1:]:  # the first line is a title
         data, _, comment = line.partition("#")
         if data.strip()[:1].isalpha():
+            if data.strip() in sections:
+                raise FormatError.at(name, number, f"there is a second section {data.strip()}; leave one out")
             section = sections[data.strip()] = _Section(name, comment.strip(), number, [], [])
         elif section is None:
             head += [(number, data.strip())]
@@ -133,6 +136,13 @@ def _sections(text: str, name: str) -> tuple[list[tuple[int, str]], dict[str, _S
             section.rows.append(cells)
             section.lines.append(number)
     return head, sections
+
+
+def _comments(text: str, head: Sequence[tuple[int, str]]) -> list[str]:
+    """Give the title, and what stands alone behind a # before the sections."""
+    lines = text.split("\n")
+    said = [lines[0], *(lines[number - 1] for number, data in head if not data)]
+    return [line.strip().removeprefix("#").strip() for line in said if line.strip()]
 
 
 def _agree(head: Sequence[tuple[int, str]], things: str, section: _Section | None, name: str) -> None:

@@ -63,7 +63,9 @@ def _place(cells: Sequence[str], name: str, line: int) -> tuple[float, float, fl
     try:
         x, y, z = numbers(cells)
     except ValueError:
-        raise FormatError.at(name, line, f"{shown(' '.join(cells))} are no three numbers x y z") from None
+        raise FormatError.at(
+            name, line, f"{shown(' '.join(cells))} are no three numbers; x y z should stand here"
+        ) from None
     return x, y, z
 
 

@@ -8,15 +8,15 @@
 
 What of it becomes a curve is said in `molecules`. Rows with the right words, but not in their columns, are
 read too. Written is a residue for every vertex, a chain for every component, and the bonds along it.
-Coordinates have three decimals: a curve that this might change is refused, and a rope whose comments say that
-it is tight is not taken for tight any more. Numbers that need more columns are written in hybrid-36. Source:
-wwPDB, "Protein Data Bank Contents Guide", version 3.3; hybrid-36 is of the cctbx project.
+Coordinates have three decimals: a curve that this might change is refused. Comments are the remarks 999, and
+numbers that need more columns are written in hybrid-36. Source: wwPDB, "Protein Data Bank Contents Guide",
+version 3.3; hybrid-36 is of the cctbx project.
 """
 
 import math
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from string import ascii_lowercase, ascii_uppercase, digits
 
@@ -30,6 +30,9 @@ from sono.formats.vertices import FormatError, Raw, shown
 
 CHAINS = ascii_uppercase + ascii_lowercase + digits
 """The ids of chains."""
+
+REMARK = "REMARK 999"
+"""Begins a line of comments."""
 
 THIN = 0.005
 """A curve whose rope has a smaller radius might change its type when its coordinates are rounded."""
@@ -54,7 +57,8 @@ def read(text: str, name: str) -> list[Raw]:
         raise FormatError.at(
             name, 1, "the file holds no ATOM or HETATM; a PDB file begins each atom's line so"
         )
-    return curves([Model(model.key, model.atoms, file.bonds(model)) for model in file.models], name)
+    models = [Model(model.key, model.atoms, file.bonds(model)) for model in file.models]
+    return [replace(raw, comments=file.comments) for raw in curves(models, name)]
 
 
 @dataclass
@@ -75,6 +79,7 @@ class _File:
         self._part = 0
         self._ended = True
         self._key = ""
+        self.comments: list[str] = []
         self._links: list[tuple[tuple[str, str, str], tuple[str, str, str]]] = []
         self._connected: list[str] = []
         self.models: list[_Found] = []
@@ -97,6 +102,8 @@ class _File:
             self._ended, self._key = True, ""
         elif record == "TER":
             self._part += 1
+        elif line.startswith(REMARK):
+            self.comments.append(line.removeprefix(REMARK).strip())
         elif record == "CONECT":
             self._connected.append(line)
         elif record == "LINK":
@@ -167,7 +174,7 @@ def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) ->
     """Give the whole file. Raises `FormatError` for a curve that does not fit into the columns."""
     parts = list(components)
     _refuse_misfits(parts)
-    lines = [f"REMARK 999 {line}" for comment in comments for line in comment.splitlines()]
+    lines = [f"{REMARK} {line}" for comment in comments for line in comment.splitlines()]
     bonds, serial = list[str](), 1
     for chain, vertices in zip(CHAINS, parts, strict=False):
         first = serial

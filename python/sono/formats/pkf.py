@@ -45,12 +45,13 @@ def recognises(text: str) -> bool:
 @np.errstate(all="ignore")
 def read(text: str, name: str) -> list[Raw]:
     """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
-    parts = list(_Lines(text, name).components())
+    lines = _Lines(text, name)
+    parts = list(lines.components())
+    said = [lines.knot]
     if not all(part.smooth for part in parts):
         chains = [Chain(part.nodes[:, :3], part.lines, part.closed) for part in parts]
-        return [
-            Raw(chains, "", [f"{name}: the nodes are joined by edges, as they have no tangents of their own"])
-        ]
+        note = f"{name}: the nodes are joined by edges, as they have no tangents of their own"
+        return [Raw(chains, notes=[note], comments=said)]
     arcs = [_Arcs.of(part.nodes, part.closed) for part in parts]
     for part, found in zip(parts, arcs, strict=True):
         if not found.proper.all():
@@ -65,7 +66,8 @@ def read(text: str, name: str) -> list[Raw]:
     except ValueError as error:
         raise FormatError.at(name, parts[0].lines[0], f"{error}; correct the nodes") from None
     chains = [part.chain(curve) for part, curve in zip(parts, curves, strict=True)]
-    return [Raw(chains, "", [f"{name}: the biarcs were sampled at {sum(map(len, curves))} points"])]
+    note = f"{name}: the biarcs were sampled at {sum(map(len, curves))} points"
+    return [Raw(chains, notes=[note], comments=said)]
 
 
 class _Lines:
@@ -75,6 +77,7 @@ class _Lines:
         self._name = name
         self._lines = iter(enumerate([*text.rstrip().split("\n"), ""], 1))
         self._line = 1
+        self.knot = ""
 
     def _take(self, what: str) -> str:
         self._line, line = next(self._lines, (self._line, ""))
@@ -88,7 +91,7 @@ class _Lines:
     def components(self) -> Iterator["_Part"]:
         if self._take("PKF 0.2").split() != ["PKF", "0.2"]:
             raise self._error("only version 0.2 of PKF is read; the first line should be PKF 0.2")
-        self._take("BIARC_KNOT and a name")
+        self.knot = self._take("BIARC_KNOT and a name").partition(" ")[2].strip()
         for tag in ("ETICL", "CITEL", "HISTL"):
             self._count(tag, 0)
             while self._take("END").strip() != "END":
@@ -96,6 +99,9 @@ class _Lines:
         for _ in range(self._count("NCMP", 1)):
             count = self._count("COMP", 3)
             yield self._part([self._node() for _ in range(count)])
+        for number, line in self._lines:
+            if line.strip():
+                raise FormatError.at(self._name, number, f"{shown(line.strip())} is left over; correct NCMP")
 
     def _count(self, tag: str, least: int) -> int:
         words = self._take(f"{tag} and a number").split()
