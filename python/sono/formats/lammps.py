@@ -28,12 +28,13 @@ coordinate reads back to the same bits. Source: the documentation of LAMMPS, com
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sono.formats.bonds import along
 from sono.formats.boxes import Box
 from sono.formats.simulated import BY_FLAGS, BY_NEAREST, Atoms, column, gaps, kept, whole
 from sono.formats.vertices import FormatError, Raw, shown
@@ -91,7 +92,7 @@ def _by_order(atoms: Atoms) -> tuple[list[Ints], Sequence[bool | None], list[str
 
 def _by_bonds(bonds: Ints, atoms: Atoms) -> tuple[list[Ints], Sequence[bool | None], list[str]]:
     """Give the chains along the bonds, likewise."""
-    chains = list(_along(bonds, atoms))
+    chains = list(along(bonds, atoms))
     groups, notes = kept([chain for chain, _ in chains], len(atoms.ids))
     rings = {chain[0] for chain, ring in chains if ring}
     return groups, [group[0] in rings for group in groups], notes
@@ -230,31 +231,6 @@ def _bonds(section: _Section | None, atoms: Atoms) -> Ints | None:
             "the bond is with an atom that is not there; correct its id",
         )
     return places
-
-
-def _along(bonds: Ints, atoms: Atoms) -> Iterator[tuple[Ints, bool]]:
-    """Give the chains along the bonds as places, each from its first atom, and tell which are rings."""
-    beside: list[list[int]] = [[] for _ in atoms.ids]
-    for a, b in np.unique(np.sort(bonds, axis=1), axis=0).tolist():
-        beside[a].append(b)
-        beside[b].append(a)
-    for place, others in enumerate(beside):
-        if len(others) > 2 or place in others:
-            raise FormatError.at(
-                atoms.name,
-                int(atoms.lines[place]),
-                f"atom {atoms.ids[place]} has {len(others)} bonds, but curves do not branch; leave some out",
-            )
-    seen = [False] * len(beside)
-    ends = [place for place, others in enumerate(beside) if len(others) < 2]
-    for start in [*ends, *range(len(beside))]:  # rings are left when all chains with ends are gone
-        chain, here = [], start
-        while here >= 0 and not seen[here]:
-            seen[here] = True
-            chain.append(here)
-            here = min((other for other in beside[here] if not seen[other]), default=-1)
-        if chain:
-            yield np.array(chain), len(beside[start]) == 2
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:

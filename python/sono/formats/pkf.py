@@ -15,20 +15,19 @@
     ...
     END
 
-The arcs are sampled, as finely as `sampling` says; they meet where libbiarc's midpoint rule lets them. Nodes
-without tangents, or with the same one for all, are joined by edges. Source: M. Carlen's libbiarc, its
-documentation of `Curve::readPKF` and `Biarc::make`; J. Smutny's thesis (EPFL, 2004) on biarcs.
+The arcs are sampled, as finely as `sampling` says. Nodes without tangents, or with the same one for all, are
+joined by edges. Source: M. Carlen's libbiarc, its documentation of `Curve::readPKF`.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sono.formats.biarcs import Arcs, drawn
 from sono.formats.doubts import closing_edge
-from sono.formats.sampling import Drawing, sampled
+from sono.formats.sampling import sampled
 from sono.formats.vertices import Chain, FormatError, Raw, not_a_number, numbers, shown
 
 Floats = NDArray[np.float64]
@@ -52,17 +51,9 @@ def read(text: str, name: str) -> list[Raw]:
         chains = [Chain(part.nodes[:, :3], part.lines, part.closed) for part in parts]
         note = f"{name}: the nodes are joined by edges, as they have no tangents of their own"
         return [Raw(chains, notes=[note], comments=said)]
-    arcs = [_Arcs.of(part.nodes, part.closed) for part in parts]
-    for part, found in zip(parts, arcs, strict=True):
-        if not found.proper.all():
-            raise FormatError.at(
-                name,
-                part.lines[found.proper.argmin()],
-                "no biarc goes from this node to the next, as one of the tangents points back; correct it, "
-                "or leave out all tangents to join the nodes by edges",
-            )
+    arcs = [part.arcs(name) for part in parts]
     try:
-        curves = sampled(lambda pieces: _drawn(arcs, pieces), PIECES)
+        curves = sampled(lambda pieces: drawn(arcs, pieces), PIECES)
     except ValueError as error:
         raise FormatError.at(name, parts[0].lines[0], f"{error}; correct the nodes") from None
     chains = [part.chain(curve) for part, curve in zip(parts, curves, strict=True)]
@@ -145,79 +136,20 @@ class _Part:
     def closed(self) -> bool:
         return not closing_edge(self.nodes[:, :3])
 
+    def arcs(self, name: str) -> Arcs:
+        """Give the arcs along the nodes. Raises `FormatError` where there are none."""
+        found = Arcs.of(self.nodes, self.closed)
+        if not found.proper.all():
+            raise FormatError.at(
+                name,
+                self.lines[found.proper.argmin()],
+                "no biarc goes from this node to the next, as one of the tangents points back; correct it, "
+                "or leave out all tangents to join the nodes by edges",
+            )
+        return found
+
     def chain(self, curve: Floats) -> Chain:
         """Give the points of a curve the lines of the nodes ahead of them."""
         biarcs = len(self.nodes) - (not self.closed)
         lines = np.repeat(self.lines[:biarcs], len(curve) // biarcs).tolist()
         return Chain(curve, lines if self.closed else [*lines, self.lines[-1]], self.closed)
-
-
-@dataclass(frozen=True, eq=False)
-class _Arcs:
-    """Arcs of circles one after the other: where they begin, their unit `tangents` there, and where they end.
-
-    All are (m, 3). An `open` curve goes on to the last end; `proper` (m / 2,) tells where a biarc fits.
-    """
-
-    starts: Floats
-    tangents: Floats
-    ends: Floats
-    open: bool
-    proper: NDArray[np.bool_]
-
-    @classmethod
-    def of(cls, nodes: Floats, closed: bool) -> Self:
-        """Make two arcs between any two neighbours of nodes (n, 6)."""
-        t = nodes[:, 3:] / np.linalg.norm(nodes[:, 3:], axis=1, keepdims=True)
-        last = len(nodes) if closed else -1
-        q0, t0, q1, t1 = (
-            nodes[:last, :3],
-            t[:last],
-            np.roll(nodes[:, :3], -1, axis=0)[:last],
-            np.roll(t, -1, axis=0)[:last],
-        )
-        d = q1 - q0
-        a, b, dd = _dot(t0, d), _dot(t1, d), _dot(d, d)
-        # Both arcs touch the sides of a polygon q0, b0, b1, q1 along t0, t1 and the tangent where they meet.
-        # The first side is s/a, the last s/b and the middle one s/a + s/b long: this gives s.
-        s = dd / (2 + np.sqrt(4 + 2 * (1 - _dot(t0, t1)) * dd / (a * b)))
-        b0, b1 = q0 + s / a * t0, q1 - s / b * t1
-        middle = b0 + b / (a + b) * (b1 - b0)
-        tangent = (b1 - b0) / np.linalg.norm(b1 - b0, axis=1, keepdims=True)
-        starts, tangents, ends = (_in_turn(*pair) for pair in ((q0, middle), (t0, tangent), (middle, q1)))
-        return cls(starts, tangents, ends, not closed, ((a > 0) & (b > 0))[:, 0])
-
-    def drawn(self, pieces: int) -> tuple[Floats, float, float]:
-        """Give the vertices when each arc is so many edges, their distance from the arcs and their angle."""
-        chords = self.ends - self.starts
-        along, lengths = _dot(chords, self.tangents), np.linalg.norm(chords, axis=1, keepdims=True)
-        across = chords - along * self.tangents
-        half = np.arctan2(
-            np.linalg.norm(across, axis=1, keepdims=True), along
-        )  # an arc turns by twice as much
-        aside = across / np.linalg.norm(across, axis=1, keepdims=True)
-        points = []
-        for share in np.arange(pieces) / pieces:
-            turned = np.cos(share * half) * self.tangents + np.sin(share * half) * aside
-            on_circle = lengths * np.sin(share * half) / np.sin(half) * turned
-            points.append(self.starts + np.where(half > 0, on_circle, share * chords))
-        rows = np.stack(points, axis=1).reshape(-1, 3)
-        far = np.where(half > 0, lengths / np.sin(half) * np.sin(half / (2 * pieces)) ** 2, 0).max()
-        return (
-            np.vstack([rows, self.ends[-1:]]) if self.open else rows,
-            float(far),
-            float(half.max() / pieces),
-        )
-
-
-def _drawn(arcs: Sequence[_Arcs], pieces: int) -> Drawing:
-    curves, far, angles = zip(*(arc.drawn(pieces) for arc in arcs), strict=True)
-    return list(curves), max(far), max(angles)
-
-
-def _dot(a: Floats, b: Floats) -> Floats:
-    return np.asarray((a * b).sum(axis=1, keepdims=True))
-
-
-def _in_turn(a: Floats, b: Floats) -> Floats:
-    return np.stack([a, b], axis=1).reshape(-1, 3)
