@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import Sono
 from hypothesis import given
 from hypothesis import strategies as st
 from knots import Floats, damaged, hopf, trefoil
@@ -167,6 +168,18 @@ def test_solvent_is_left_out_and_gaps_are_told() -> None:
     assert curve.doubts() == ["k.lammpstrj:9: the ids of neighbours jump from 16 to 18"]
 
 
+def test_a_frame_that_is_cut_off_spoils_no_other(tmp_path: Path, sono: Sono) -> None:
+    whole = frame([trefoil()], step=0) + frame([trefoil()], step=5)
+    for end in (whole.rfind("\n", 0, -9), whole.rfind("ITEM: ATOMS"), whole.rfind("60")):
+        (tmp_path / "k.lammpstrj").write_text(whole[:end])
+        assert same(formats.read(tmp_path / "k.lammpstrj:0"), [trefoil()])
+        with pytest.raises(FormatError, match=r"k\.lammpstrj:\d+: "):
+            formats.read(tmp_path / "k.lammpstrj:5")
+        result = sono("measure", "k.lammpstrj")
+        assert [row.split()[0] for row in result.stdout.splitlines()] == ["knot", "k:0"]
+        assert result.exit_code == 1
+
+
 DUMP = frame([trefoil()], "id mol x y z ix iy iz")
 
 
@@ -185,11 +198,14 @@ MALFORMED = {
     "rubbish first": (f"x\n{DUMP}", r":1: 'x' is no ITEM:"),
     "no atoms block": (
         DUMP.partition("ITEM: ATOMS")[0],
-        r":1: the frame that begins here has no ITEM: ATOMS",
+        r":5: the frame has no ITEM: ATOMS; complete it",
     ),
     "only a time": ("ITEM: TIME\n0\n", r":1: the file holds no block ITEM: ATOMS"),
-    "no timestep": (DUMP.partition("0\n")[2], r":7: the frame of these atoms has no ITEM: TIMESTEP"),
-    "no number": (DUMP.replace("ITEM: NUMBER OF ATOMS\n60\n", ""), r":7: .* has no ITEM: NUMBER"),
+    "no timestep": (DUMP.partition("0\n")[2], r":7: the frame has no ITEM: TIMESTEP; complete it"),
+    "no number": (
+        DUMP.replace("ITEM: NUMBER OF ATOMS\n60\n", ""),
+        r":7: the frame has no ITEM: NUMBER; complete it",
+    ),
     "words as a timestep": (swapped("\n0\n", "\nzero\n"), r":2: 'zero' is no whole number"),
     "words as a number": (swapped("\n60\n", "\nsixty\n"), r":4: 'sixty' is no whole number"),
     "too few rows": ("".join(rows_of(DUMP)[:-5]), r":64: the frame ends here after 55 atoms"),

@@ -103,6 +103,18 @@ def test_closed_chains_are_a_link_and_open_ones_curves() -> None:
     ]
 
 
+def test_a_chain_that_is_wrong_spoils_no_other() -> None:
+    stray = atom(120, [0.0, 0, 90], chain="B") + atom(121, [0.0, 0, 0], chain="B")
+    good, bad = raws(trace(OPEN) + "TER\n" + trace(KNOT[:20] + 50, 100, chain="B") + stray)
+    assert len(VertexFile.checked("k.pdb", good, "direct").components) == 1
+    with pytest.raises(FormatError, match=r"^k\.pdb:67: an edge of "):
+        VertexFile.checked("k.pdb", bad, "direct")
+    # But a ring does not come without the other ring that it may be linked with.
+    stray_atom = KNOT + 500 * (np.arange(60) == 30)[:, None]
+    with pytest.raises(FormatError, match=r"^k\.pdb:92: an edge of "):
+        read(trace(KNOT) + "TER\n" + trace(stray_atom, 100, chain="B"))
+
+
 def models(*contents: str) -> str:
     return "".join(f"MODEL {i:>8}\n{content}ENDMDL\n" for i, content in enumerate(contents, 1)) + "END\n"
 

@@ -15,10 +15,12 @@ import re
 from bisect import bisect
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from sono.formats.fourier import Floats, Series, polygons
+from sono.formats.refused import attempted
 from sono.formats.vertices import Chain, FormatError, Raw, numbers, shown
 
 HIGHEST = 4096
@@ -57,7 +59,8 @@ def read(text: str, name: str) -> list[Raw]:
         raise knot.tag.error(f"this {knot.tag.name} is not ended; complete the file")
     if not knots:
         raise FormatError.at(name, 1, "the file holds no knot with an Id; give one such as <AB Id=...>")
-    return [knot.curve(key) for key, knot in zip(_keys(knots), knots, strict=True)]
+    keys = _keys(knots)
+    return [attempted(partial(knot.curve, key), key) for key, knot in zip(keys, knots, strict=True)]
 
 
 @dataclass(frozen=True)

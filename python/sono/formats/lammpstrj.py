@@ -21,11 +21,13 @@ Source: the documentation of LAMMPS, commands `dump` and `Howto_triclinic`.
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats.boxes import Box
+from sono.formats.refused import attempted
 from sono.formats.simulated import BY_FLAGS, BY_NEAREST, Atoms, column, gaps, whole
 from sono.formats.vertices import FormatError, Raw, shown
 
@@ -42,18 +44,21 @@ def recognises(text: str) -> bool:
 
 
 def read(text: str, name: str) -> list[Raw]:
-    """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
-    frames = [(key, _curve(frame)) for key, frame in _frames(text, name)]
+    """Parse a whole file; lengths keep its unit. Raises `FormatError`.
+
+    A frame that is wrong spoils no other: its error is raised by its chains.
+    """
+    frames = list(_frames(text, name))
     if not frames:
         raise FormatError.at(
             name, 1, "the file holds no block ITEM: ATOMS; write one with dump atom or custom"
         )
-    keys = [key for key, _ in frames]
+    keys = [frame["TIMESTEP"].first if "TIMESTEP" in frame else "" for frame in frames]
     if len(set(keys)) < len(keys):
         keys = [str(number) for number in range(1, len(frames) + 1)]
     if len(frames) == 1:
         keys = [""]
-    return [Raw(raw.chains, key, raw.notes) for key, (_, raw) in zip(keys, frames, strict=True)]
+    return [attempted(partial(_curve, frame, key), key) for key, frame in zip(keys, frames, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,17 @@ class _Block:
     title: str
     rows: list[str]
     line: int
+
+    @property
+    def first(self) -> str:
+        """Its first row."""
+        return self.rows[0].strip() if self.rows else ""
+
+    def number(self) -> int:
+        """Read the whole number that its first row should be. Raises `FormatError`."""
+        if not (self.first.isascii() and self.first.isdigit()):
+            raise self.error(0, f"{shown(self.first)} is no whole number; it should stand here")
+        return int(self.first[:18])
 
     def error(self, row: int, message: str) -> FormatError:
         """Make the error for one row, or for the title for -1."""
@@ -90,8 +106,8 @@ def _filled(rows: list[str]) -> list[str]:
     return rows
 
 
-def _frames(text: str, name: str) -> Iterator[tuple[str, dict[str, _Block]]]:
-    """Give the blocks of every frame by the first word of their titles, and its timestep."""
+def _frames(text: str, name: str) -> Iterator[dict[str, _Block]]:
+    """Give the blocks of every frame by the first word of their titles."""
     frame: dict[str, _Block] = {}
     for block in _blocks(text, name):
         word = block.title.partition(" ")[0]
@@ -99,31 +115,31 @@ def _frames(text: str, name: str) -> Iterator[tuple[str, dict[str, _Block]]]:
             raise block.error(-1, "the dump is one of ENTRIES, not of atoms; use dump custom id mol x y z")
         frame[word] = block
         if word == "ATOMS":
-            yield _timestep(frame, block), frame
+            yield frame
             frame = {}
     if "TIMESTEP" in frame:
-        raise frame["TIMESTEP"].error(-1, "the frame that begins here has no ITEM: ATOMS; cut it off")
+        yield frame
 
 
-def _timestep(frame: dict[str, _Block], atoms: _Block) -> str:
-    for word in ("TIMESTEP", "NUMBER"):
+def _check(frame: dict[str, _Block]) -> None:
+    """Refuse a frame that is not whole."""
+    last = [*frame.values()][-1]
+    for word in ("TIMESTEP", "NUMBER", "ATOMS"):
         if word not in frame:
-            raise atoms.error(-1, f"the frame of these atoms has no ITEM: {word}; complete the file")
-        value = (frame[word].rows or [""])[0].strip()
-        if not (value.isascii() and value.isdigit()):
-            raise frame[word].error(0, f"{shown(value)} is no whole number; it should stand here")
-    promised, found = int(frame["NUMBER"].rows[0]), len(atoms.rows)
+            raise last.error(-1, f"the frame has no ITEM: {word}; complete it, or cut the file off above it")
+    frame["TIMESTEP"].number()
+    promised, found = frame["NUMBER"].number(), len(frame["ATOMS"].rows)
     if promised != found:
-        raise atoms.error(
+        raise last.error(
             found - 1,
             f"the frame ends here after {found} atoms, its ITEM: NUMBER OF ATOMS is {promised}; complete it, "
             f"or cut the file off above line {frame['TIMESTEP'].line}",
         )
-    return frame["TIMESTEP"].rows[0].strip()
 
 
 @np.errstate(all="ignore")  # what is not finite is refused later on
-def _curve(frame: dict[str, _Block]) -> Raw:
+def _curve(frame: dict[str, _Block], key: str) -> Raw:
+    _check(frame)
     box = _box(frame["BOX"]) if "BOX" in frame else None
     atoms, notes = _atoms(frame["ATOMS"], box)
     groups, left = atoms.by_molecule()
@@ -134,7 +150,7 @@ def _curve(frame: dict[str, _Block]) -> Raw:
         notes = [BY_NEAREST]
     notes = [*notes, *left, *gaps([atoms.ids[group] for group in groups])]
     where = f"{atoms.name}:{frame['ATOMS'].line}"
-    return Raw([chain for chain, _ in pairs], "", [f"{where}: {note}" for note in notes])
+    return Raw([chain for chain, _ in pairs], key, [f"{where}: {note}" for note in notes])
 
 
 def _atoms(block: _Block, box: Box | None) -> tuple[Atoms, list[str]]:

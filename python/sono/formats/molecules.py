@@ -6,14 +6,16 @@ model are the components of one curve, a link perhaps, with the model as the key
 of proteins are, every chain is a curve of its own, with the chain as the key, such as A, or 2:A in model 2.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from sono.formats.boxes import second_chain
 from sono.formats.doubts import LONGEST, closing_edge
+from sono.formats.refused import attempted
 from sono.formats.vertices import SHOWN, Chain, FormatError, Raw
 
 BACKBONE = ({"N", "C"}, {"P", "O3'"})
@@ -21,6 +23,8 @@ BACKBONE = ({"N", "C"}, {"P", "O3'"})
 
 CA_TO_CA = 4.2
 """Neighbours along a protein are nearer than so many ångströms; where they are not, some may be missing."""
+
+NO_BOND = "no CONECT joins this atom"
 
 Bonds = set[frozenset[int]]
 
@@ -54,19 +58,26 @@ class Model:
 
 @np.errstate(all="ignore")  # what is not finite is refused later on
 def curves(models: Sequence[Model], name: str) -> list[Raw]:
-    """Give the curves of all models of the file `name`. Raises `FormatError`."""
-    traces = [list(_traces(model, name)) for model in models]
-    whole = all(trace.closed for model in traces for trace in model)
+    """Give the curves of all models of the file `name`, at least one.
+
+    A chain that is wrong spoils no open one: its error is raised by its chains.
+    """
+    traces = [_traces(model, name) for model in models]
+    links = all(trace.closed for several in traces for trace in several)
     found: list[Raw] = []
     for model, several in zip(models, traces, strict=True):
-        if whole:
-            notes = [note for trace in several for note in trace.notes()]
-            found.append(Raw([trace.chain() for trace in several], model.key, notes))
+        if links:
+            found.append(attempted(partial(_link, several, model.key), model.key))
             continue
-        for key, trace in zip(_keys(several), several, strict=True):
-            key = f"{model.key}:{key}" if len(models) > 1 else key
-            found.append(Raw([trace.chain()], key, trace.notes()))
-    return found if len(found) > 1 else [Raw(found[0].chains, "", found[0].notes)]
+        for chain, trace in zip(_keys(several), several, strict=True):
+            key = f"{model.key}:{chain}" if len(models) > 1 else chain
+            found.append(attempted(partial(_link, [trace], key), key))
+    return found if len(found) > 1 else [replace(found[0], key="")]
+
+
+def _link(traces: Sequence["_Trace"], key: str) -> Raw:
+    notes = [note for trace in traces for note in trace.notes()]
+    return Raw([trace.chain() for trace in traces], key, notes)
 
 
 def _keys(traces: Sequence["_Trace"]) -> list[str]:
@@ -76,15 +87,15 @@ def _keys(traces: Sequence["_Trace"]) -> list[str]:
     return ids if plain else [str(number) for number in range(1, len(ids) + 1)]
 
 
-def _traces(model: Model, name: str) -> Iterator["_Trace"]:
+def _traces(model: Model, name: str) -> list["_Trace"]:
     strands: dict[tuple[str, int], list[int]] = {}
     for index, atom in enumerate(model.atoms):
         strands.setdefault((atom.chain, atom.part), []).append(index)
     hetero = all(atom.hetero for atom in model.atoms)
     found = [pair for strand in strands.values() if (pair := _backbone(strand, model.atoms, hetero))]
     found = found or [("", strand) for strand in strands.values()]
-    for called, places in [pair for pair in found if len(pair[1]) > 2] or found[:1]:
-        yield _Trace(name, model, called, places)
+    long = [pair for pair in found if len(pair[1]) > 2] or found[:1]
+    return [_Trace(name, model, called, places) for called, places in long]
 
 
 def _backbone(strand: Sequence[int], atoms: Sequence[Atom], hetero: bool) -> tuple[str, list[int]] | None:
@@ -116,17 +127,16 @@ class _Trace:
         self.atoms = [model.atoms[place] for place in places]
         self._rows = np.array([atom.place for atom in self.atoms])
         self._lengths = np.linalg.norm(np.roll(self._rows, -1, axis=0) - self._rows, axis=1)
-        joined = [frozenset(pair) in model.bonds for pair in pairwise(places)]
-        self._spelled = sum(joined) > len(joined) / 2
-        self._refuse_breaks(joined)
+        self._joined = [frozenset(pair) in model.bonds for pair in pairwise(places)]
+        self._spelled = sum(self._joined) > len(self._joined) / 2
         self._bonded = self._ends_bonded()
         self.closed = self._bonded or (not self._spelled and self._ends_near())
 
-    def _refuse_breaks(self, joined: Sequence[bool]) -> None:
+    def _refuse_breaks(self) -> None:
         """Refuse to go on where a second chain seems to begin."""
         after, why = -1, ""
         if self._spelled:
-            after, why = (-1, "") if all(joined) else (joined.index(False), "no CONECT joins this atom")
+            after, why = (-1, "") if all(self._joined) else (self._joined.index(False), NO_BOND)
         elif (found := second_chain(self._rows)) and not self._jumps(found[0]):
             after, why = found[0], f"an edge of {found[1]:.1f} times the median one leads here"
         elif restarts := self._restarts():
@@ -171,6 +181,8 @@ class _Trace:
         return bool(self._lengths[-1] <= LONGEST * usual)
 
     def chain(self) -> Chain:
+        """Give the chain. Raises `FormatError` where a second one seems to begin."""
+        self._refuse_breaks()
         return Chain(self._rows, [atom.line for atom in self.atoms], self.closed)
 
     def notes(self) -> list[str]:
