@@ -127,6 +127,12 @@ def test_models_are_curves() -> None:
     assert [raw.key for raw in raws(models(two, two))] == ["1:A", "1:B", "2:A", "2:B"]
 
 
+def test_segments_are_chains_where_these_have_no_ids() -> None:
+    rows = [row.rstrip("\n")[:66].ljust(72) for row in trace(OPEN, chain=" ").splitlines()]
+    content = "".join(f"{row}{segment}\n" for segment in ("PROA", "PROB") for row in rows)
+    assert [raw.key for raw in raws(content)] == ["PROA", "PROB"]
+
+
 def test_chains_without_ids_are_numbered() -> None:
     assert [raw.key for raw in raws(trace(OPEN, chain=" ") + "TER\n" + trace(OPEN, chain=" "))] == ["1", "2"]
 

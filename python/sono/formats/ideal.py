@@ -27,9 +27,10 @@ HIGHEST = 4096
 """The highest harmonic that is read."""
 
 _TAG = re.compile(
-    r"<(?:!--.*?-->|\?.*?\?>|(?P<end>/?)(?P<name>\w+)(?P<more>(?:[^<>\"]|\"[^<>\"]*\")*)>)?", re.DOTALL
+    r"""<(?:!--.*?-->|\?.*?\?>|(?P<end>/?)(?P<name>\w+)(?P<more>(?:[^<>"']|"[^<>"]*"|'[^<>']*')*)>)?""",
+    re.DOTALL,
 )
-_PAIR = re.compile(r"(\w+)\s*=\s*(?:\"([^\"]*)\"|([^\s\"/]+))")
+_PAIR = re.compile(r"""(\w+)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'/]+))""")
 
 
 def recognises(text: str) -> bool:
@@ -80,7 +81,7 @@ class _Tag:
         """Read one of its values, three numbers."""
         value = self.values.get(name, "")
         try:
-            x, y, z = numbers(value.split(","))
+            x, y, z = numbers(value.replace(",", " ").split())
         except ValueError:
             raise self.error(
                 f"{name.upper()} is {shown(value)}, but should be three numbers: x,y,z"
@@ -111,7 +112,7 @@ def _tags(text: str, name: str) -> Iterator[_Tag]:
                 name, line, "a tag begins here that is not ended by >, or has an odd quote; correct it"
             )
         if match["name"]:
-            pairs = {key.lower(): quoted or bare for key, quoted, bare in _PAIR.findall(match["more"])}
+            pairs = {key.lower(): "".join(values) for key, *values in _PAIR.findall(match["more"])}
             yield _Tag(name, line, match["name"].lower(), bool(match["end"]), pairs)
 
 

@@ -114,7 +114,8 @@ class _File:
         cells = [line[column : column + 8].strip() for column in (30, 38, 46)]
         if line[27:30].strip() or not all(_DECIMAL.fullmatch(cell) for cell in cells):
             return self._free(line, number)
-        chain, at = _site(line, 12)[0], _site(line, 12)[1]
+        chain, at, _ = _site(line, 12)
+        chain = chain or line[72:76].strip()  # the segment, in older files and those of CHARMM
         kind = line[17:20].strip()
         place = self._place(cells, number)
         hetero = line.startswith("HETATM")
