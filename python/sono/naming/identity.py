@@ -1,0 +1,155 @@
+"""What knot or link a curve is.
+
+>>> from sono.starts import start
+>>> identify(start("3_1#m4_1")).name, identify(start("12n_725")).proven
+('3_1#4_1', True)
+"""
+
+import cmath
+import math
+import re
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from sono import _core
+from sono.curve import Components
+from sono.invariants.crossings import diagram, linking_matrix, planar_diagram
+from sono.invariants.diagrams import (
+    Gauss,
+    alexander_polynomial,
+    as_crossings,
+    gauss_code,
+    homfly_polynomial,
+    shortened,
+    written,
+)
+from sono.invariants.identify import ORDERS
+from sono.invariants.polynomials import alexander
+from sono.invariants.signatures import signature
+from sono.naming.known import Type, sharing
+from sono.records import Record
+
+MOST_SIMPLER = 60
+"""Diagrams that are looked through for one with fewer crossings."""
+
+MOST_PROOF = 400
+"""Diagrams, on either side, that a proof looks through."""
+
+MOST_NAMES = 100
+"""Names of a sum, each of whose parts may have several."""
+
+
+@dataclass(frozen=True, repr=False)
+class Identity(Record):
+    """What knot or link a curve is, and what tells it.
+
+    `names` are those of all types to 13 crossings (links to 9) that it may be, none where the table has no
+    such type; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not linked. If
+    `proven`, moves make the table's diagrams of the curve's, and there is one name; otherwise the invariants
+    tell. A sum of links does not say which of their components are joined.
+
+    `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
+    the incoming lower one. `crossings` counts its crossings. `linking` has the linking numbers of all pairs
+    of components; `homfly`, in Regina's alpha and z, and `alexander`, of a single variable, are None where
+    they would take too long.
+
+    >>> import sono
+    >>> found = sono.identify(sono.start("3_1", variant=7))
+    >>> found.name, found.proven, found.crossings, found.homfly
+    ('3_1', True, 3, 'x^-2 y^2 + 2 x^-2 - x^-4')
+    """
+
+    names: tuple[str, ...]
+    proven: bool
+    components: int
+    crossings: int
+    determinant: int
+    signature: int
+    linking: tuple[int, ...]
+    homfly: str | None
+    alexander: str | None
+    pd: tuple[tuple[int, int, int, int], ...]
+
+    @property
+    def name(self) -> str | None:
+        """The name, or all of them, with "or" between; None where the table has no such type."""
+        return " or ".join(self.names) or None
+
+
+def identify(curve: Components) -> Identity:
+    """Return what knot or link a curve is. Raises `TooEntangledError`, and `CurveError` if it crosses itself.
+
+    The prime parts of its diagram are looked up by their HOMFLY polynomials; then moves are sought that make
+    the table's diagrams of them.
+    """
+    gauss = shortened(gauss_code(diagram(curve)))
+    found = as_crossings(gauss)
+    names, proven = _named(_core.pieces(gauss, MOST_SIMPLER))
+    polynomial = homfly_polynomial(gauss)
+    return Identity(
+        names=names,
+        proven=proven,
+        components=len(curve),
+        crossings=len(found.sign),
+        determinant=round(alexander(found, -1)),
+        signature=signature(found, -1),
+        linking=tuple(linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()),
+        homfly=None if polynomial is None else written(polynomial),
+        alexander=None if polynomial is None else alexander_polynomial(polynomial),
+        pd=tuple(planar_diagram(found)),
+    )
+
+
+def _named(pieces: list[list[Gauss]]) -> tuple[tuple[str, ...], bool]:
+    """Return the names of what is made of these parts, and whether they are proven."""
+    known = {id(prime): _known(prime) for piece in pieces for prime in piece}
+    ways = product(*(known[id(prime)][0] for piece in pieces for prime in piece))
+    names: dict[str, None] = {}
+    for way in ways:
+        parts = iter(way)
+        sums = ["#".join(sorted((next(parts) for _ in piece), key=_order)) or "0_1" for piece in pieces]
+        names["+".join(sorted(sums, key=_order))] = None
+        if len(names) == MOST_NAMES:
+            break
+    return tuple(names), all(proven for _, proven in known.values())
+
+
+def _order(name: str) -> tuple[list[int], str]:
+    """Return by what names are sorted: crossings and numbers first."""
+    return [int(number) for number in re.findall(r"\d+", name)], name
+
+
+def _known(prime: Gauss) -> tuple[list[str], bool]:
+    """Return the names that a prime part may have, and whether there is one that is proven."""
+    polynomial = homfly_polynomial(prime)
+    types = sharing(polynomial) if polynomial else []
+    at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
+    if at is not None:
+        return [types[at].name], True
+    return [type.name for type in types if _may_be(prime, type)], False
+
+
+def _may_be(prime: Gauss, type: Type) -> bool:
+    """Tell whether crossing numbers and signatures agree.
+
+    A reduced alternating diagram has as few crossings as there can be (L. Kauffman, K. Murasugi,
+    M. Thistlethwaite, 1987).
+    """
+    crossings = len(prime[1])
+    alternating = _is_alternating(prime)
+    if type.crossings > crossings or alternating != (
+        _is_alternating(type.diagram) and type.crossings == crossings
+    ):
+        return False
+    one, other = as_crossings(prime), as_crossings(type.diagram)
+    roots = [cmath.exp(2j * math.pi / k) for k in ORDERS]
+    return all(signature(one, t) == signature(other, t) for t in roots)
+
+
+def _is_alternating(gauss: Gauss) -> bool:
+    def alternates(along: list[int]) -> bool:
+        return all((one > 0) != (other > 0) for one, other in zip(along, along[1:] + along[:1], strict=True))
+
+    return all(map(alternates, gauss[0]))
