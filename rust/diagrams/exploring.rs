@@ -1,40 +1,53 @@
-//! From diagram to diagram, by passes and flypes that keep the number of crossings.
+//! From diagram to diagram, by passes and flypes.
 
-use std::collections::{HashSet, VecDeque};
+use std::collections::{BTreeMap, HashSet};
 
 use super::canonical::Code;
 use super::diagram::Diagram;
 
 /// Crossings of a diagram that is explored.
-const MOST_CROSSINGS: usize = 62;
+const MOST_CROSSINGS: usize = 60;
 
-/// The diagrams that are reached from one.
+/// Crossings that a detour may have more than the smallest diagram so far.
+const DETOUR: usize = 2;
+
+/// Diagrams that a search for a meeting looks at before it begins on the other side.
+const FIRST_STEPS: usize = 200;
+
+/// The diagrams that are reached from a connected one.
 struct Explorer {
     seen: HashSet<Code>,
-    todo: VecDeque<Diagram>,
+    /// Whose neighbours were not looked at: by the number of crossings, and of diagrams seen before.
+    todo: BTreeMap<(usize, usize), Diagram>,
+    fewest: usize,
 }
 
 impl Explorer {
     fn new(diagram: &Diagram) -> Self {
-        Self { seen: HashSet::from([diagram.code()]), todo: VecDeque::from([diagram.clone()]) }
+        let fewest = diagram.crossings();
+        let todo = BTreeMap::from([((fewest, 0), diagram.clone())]);
+        Self { seen: HashSet::from([diagram.code()]), todo, fewest }
     }
 
-    /// Looks at the neighbours of the diagrams so far, until so many are known or `is_goal` of one; then
-    /// returns that.
+    /// Looks at so many neighbours and some more, first at those of the smallest diagrams, until
+    /// `is_goal` of one; then returns that. One that falls apart has an empty code.
     fn explore(
         &mut self,
         most: usize,
         mut is_goal: impl FnMut(&Code, &Diagram) -> bool,
     ) -> Option<Diagram> {
-        while self.seen.len() < most {
-            let diagram = self.todo.pop_front()?;
-            for next in diagram.flyped().into_iter().chain(diagram.passed()) {
-                let code = next.code();
-                if self.seen.insert(code.clone()) {
-                    if is_goal(&code, &next) {
-                        return Some(next);
-                    }
-                    self.todo.push_back(next);
+        let mut looked = 0;
+        while looked < most {
+            let ((crossings, _), diagram) = self.todo.pop_first()?;
+            for next in diagram.neighbours((self.fewest + DETOUR).saturating_sub(crossings)) {
+                looked += 1;
+                let code = if next.is_connected() { next.code() } else { Code::new() };
+                if is_goal(&code, &next) {
+                    return Some(next);
+                }
+                self.fewest = self.fewest.min(next.crossings());
+                if !code.is_empty() && self.seen.insert(code) {
+                    self.todo.insert((next.crossings(), self.seen.len()), next);
                 }
             }
         }
@@ -84,33 +97,52 @@ fn joined(pieces: impl Iterator<Item = Piece>) -> Vec<Piece> {
 }
 
 impl Diagram {
+    /// The diagrams after one move, with at most so many `more` crossings.
+    fn neighbours(&self, more: usize) -> Vec<Self> {
+        // Of a reduced alternating diagram flypes make all others.
+        let passed = self.passed(if self.is_alternating() { 0 } else { more });
+        self.flyped().into_iter().chain(passed).collect()
+    }
+
+    fn is_connected(&self) -> bool {
+        self.circles.is_empty() && self.pieces().len() == 1
+    }
+
     /// A diagram with fewer crossings, or one that falls apart into summands, if there is one near.
     fn simpler(&self, most: usize) -> Option<Self> {
         if self.is_alternating() || self.crossings() > MOST_CROSSINGS {
             return None;
         }
-        let is_goal = |_: &Code, next: &Diagram| next.shorter().is_some() || next.summands().len() > 1;
-        Explorer::new(self).explore(most, is_goal)
+        Explorer::new(self).explore(most, |_, next| {
+            next.crossings() < self.crossings()
+                || next.crossings() == self.crossings() && next.summands().len() > 1
+        })
     }
 }
 
-/// Which of `others` moves make of a connected diagram, if up to so many diagrams on either side are
-/// enough to see it.
+/// Which of `others` moves make of a connected diagram of at most 60 crossings, if this is seen among
+/// some `most` diagrams on either side.
 pub fn meeting(diagram: &Diagram, others: &[Diagram], most: usize) -> Option<usize> {
-    let codes: Vec<_> = others.iter().map(Diagram::code).collect();
-    let at = |code: &Code| codes.iter().position(|other| other == code);
-    let mut found = at(&diagram.code());
+    if diagram.crossings() > MOST_CROSSINGS {
+        return None;
+    }
     let mut here = Explorer::new(diagram);
-    if found.is_none() {
-        here.explore(most, |code, _| {
-            found = at(code);
+    let mut there: Vec<_> = others.iter().map(Explorer::new).collect();
+    let mut found = there.iter().position(|side| side.seen == here.seen);
+    // Now from this side, now from the other ones, each time farther.
+    let mut steps = FIRST_STEPS;
+    while found.is_none() && steps <= most {
+        here.explore(steps, |code, _| {
+            found = there.iter().position(|side| side.seen.contains(code));
             found.is_some()
         });
+        found = found.or_else(|| {
+            let meets = |side: &mut Explorer| {
+                side.explore(steps, |code, _| here.seen.contains(code)).is_some()
+            };
+            there.iter_mut().position(meets)
+        });
+        steps *= 2;
     }
-    found.or_else(|| {
-        let meets = |other: &Diagram| {
-            Explorer::new(other).explore(most, |code, _| here.seen.contains(code)).is_some()
-        };
-        others.iter().position(meets)
-    })
+    found
 }

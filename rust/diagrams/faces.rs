@@ -11,12 +11,12 @@ pub(super) struct Faces {
 
 impl Faces {
     pub fn of(diagram: &Diagram) -> Self {
-        Self::around(&diagram.far, |slot| turned(slot, 3))
+        Self::by(&diagram.far, |slot| turned(slot, 3))
     }
 
     /// Those of a graph in which `next` is the slot clockwise from another. What has no edges, its
     /// slots at the other end of themselves, has no faces.
-    pub fn around(far: &[Slot], next: impl Fn(Slot) -> Slot) -> Self {
+    pub fn by(far: &[Slot], next: impl Fn(Slot) -> Slot) -> Self {
         let mut left = vec![usize::MAX; far.len()];
         let mut count = 0;
         for start in 0..far.len() {
@@ -31,6 +31,14 @@ impl Faces {
             count += 1;
         }
         Self { left, count }
+    }
+
+    /// The slots whose edges have each face to their left.
+    pub fn around(&self, far: &[Slot]) -> Vec<Vec<Slot>> {
+        let mut around = vec![vec![]; self.count];
+        let edges = (0..far.len()).filter(|&slot| far[slot] != slot);
+        edges.for_each(|slot| around[self.left[slot]].push(slot));
+        around
     }
 
     /// Whether each piece has as many faces as on a sphere (Euler).

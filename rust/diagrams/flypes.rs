@@ -15,8 +15,7 @@ impl Diagram {
     pub(super) fn flyped(&self) -> Vec<Self> {
         let faces = Faces::of(self);
         let left = &faces.left;
-        let mut around = vec![vec![]; faces.count];
-        (0..self.far.len()).for_each(|slot| around[left[slot]].push(slot));
+        let around = faces.around(&self.far);
         let mut found = vec![];
         for south_east in 0..self.far.len() {
             let (north_east, south_west) = (turned(south_east, 1), turned(south_east, 3));
@@ -36,7 +35,8 @@ impl Diagram {
     /// The diagram after the flype there, if there is more than one crossing in the tangle.
     fn turned_over(&self, south_east: Slot, upper: Slot, lower: Slot) -> Option<Self> {
         let far = &self.far;
-        let [north_east, north_west, south_west] = [1, 2, 3].map(|places| turned(south_east, places));
+        let [north_east, north_west, south_west] =
+            [1, 2, 3].map(|places| turned(south_east, places));
         let inside = self.within([far[south_east], far[north_east], upper, lower]);
         if inside.iter().filter(|&&inside| inside).count() < 2 || inside[south_east / 4] {
             return None;

@@ -44,7 +44,16 @@ impl Gauss {
     /// The slot by which a strand enters a crossing.
     fn entry(&self, (crossing, over): (usize, bool)) -> Option<Slot> {
         let right = self.right.get(crossing)?;
-        Some(4 * crossing + if !over { 0 } else if *right { 3 } else { 1 })
+        Some(
+            4 * crossing
+                + if !over {
+                    0
+                } else if *right {
+                    3
+                } else {
+                    1
+                },
+        )
     }
 }
 

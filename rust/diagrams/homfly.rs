@@ -89,7 +89,8 @@ impl Diagram {
         let mut met = vec![false; self.crossings()];
         let mut passed = vec![false; self.far.len()];
         let mut below = vec![];
-        let begin = self.entries().filter(|&slot| !is_over(slot)).max_by_key(|&slot| self.gain(slot));
+        let begin =
+            self.entries().filter(|&slot| !is_over(slot)).max_by_key(|&slot| self.gain(slot));
         for start in begin.into_iter().chain(self.entries()) {
             let mut slot = start;
             while !std::mem::replace(&mut passed[slot], true) {

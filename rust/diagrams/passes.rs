@@ -5,10 +5,12 @@
 //! nothing of the run is between them. So each pass is an isotopy; all three Reidemeister moves are such
 //! passes, of up to two crossings. What crosses least are the shortest paths from face to face.
 
+use std::collections::VecDeque;
+
 use super::diagram::{Diagram, Slot, is_over, opposite, turned};
 use super::faces::Faces;
 
-/// How many of the shortest paths between two faces are looked at.
+/// How many paths between two faces are looked at.
 const MOST_PATHS: usize = 24;
 
 /// A diagram without one run of a strand, whose two ends are slots of their own.
@@ -16,6 +18,8 @@ struct Lifted {
     /// Crossings of the run have no edges any more.
     rest: Diagram,
     faces: Faces,
+    /// The slots whose edges have each face to their left.
+    around: Vec<Vec<Slot>>,
     begin: Slot,
     end: Slot,
     over: bool,
@@ -37,16 +41,15 @@ impl Diagram {
         }
         self.runs().iter().find_map(|run| {
             let lifted = self.lifted(run);
-            let paths = lifted.paths(run.len() - 1, 1);
-            paths.first().map(|path| lifted.laid(path))
+            lifted.shortest(run.len()).map(|path| lifted.laid(&path))
         })
     }
 
-    /// The diagrams after a pass that keeps the number of crossings, where none can make it less.
-    pub(super) fn passed(&self) -> Vec<Self> {
+    /// Diagrams after a pass to at most so many `more` crossings.
+    pub(super) fn passed(&self, more: usize) -> Vec<Self> {
         let of_run = |run: &Vec<Slot>| {
             let lifted = self.lifted(run);
-            let paths = lifted.paths(run.len(), MOST_PATHS);
+            let paths = lifted.paths(&lifted.distances(), run.len() + more, MOST_PATHS);
             paths.iter().map(|path| lifted.laid(path)).collect::<Vec<_>>()
         };
         self.runs().iter().flat_map(of_run).collect()
@@ -116,62 +119,68 @@ impl Diagram {
         }
         let is_end = |slot: Slot| slot >= begin;
         let next = |slot: Slot| if is_end(slot) { slot } else { turned(slot, 3) };
-        let faces = Faces::around(&rest.far, next);
-        Lifted { rest, faces, begin, end, over: is_over(first) }
+        let faces = Faces::by(&rest.far, next);
+        let around = faces.around(&rest.far);
+        Lifted { rest, faces, around, begin, end, over: is_over(first) }
     }
 }
 
 impl Lifted {
-    /// Up to so many of the shortest paths from end to end, if they cross at most so many edges. A path
-    /// is given by slots whose edges it crosses from left to right.
-    fn paths(&self, longest: usize, most: usize) -> Vec<Vec<Slot>> {
+    /// How many edges have to be crossed from each face to the end, at least. From none of another piece
+    /// can it be reached.
+    fn distances(&self) -> Vec<usize> {
         let (left, far) = (&self.faces.left, &self.rest.far);
-        let (from, to) = (left[self.begin], left[self.end]);
-        let mut edges = vec![vec![]; self.faces.count];
-        (0..far.len()).filter(|&s| far[s] != s).for_each(|s| edges[left[s]].push(s));
-        let mut distance = vec![usize::MAX; self.faces.count];
-        distance[to] = 0;
-        let mut todo = vec![to];
-        for steps in 1..=longest {
-            let mut found = vec![];
-            for &edge in todo.iter().flat_map(|&face| &edges[face]) {
-                let face = left[far[edge]];
-                if distance[face] == usize::MAX {
-                    distance[face] = steps;
-                    found.push(face);
+        let mut distances = vec![usize::MAX; self.faces.count];
+        distances[left[self.end]] = 0;
+        let mut todo = VecDeque::from([left[self.end]]);
+        while let Some(face) = todo.pop_front() {
+            for &edge in &self.around[face] {
+                let next = left[far[edge]];
+                if distances[next] == usize::MAX {
+                    distances[next] = distances[face] + 1;
+                    todo.push_back(next);
                 }
             }
-            todo = found;
         }
-        if distance[from] == usize::MAX {
-            // Nothing is between the ends of a strand that joins two pieces.
-            return if self.is_apart() { vec![vec![]] } else { vec![] };
-        }
-        let mut paths = vec![vec![]];
-        for steps in (0..distance[from]).rev() {
-            let longer = paths.iter().flat_map(|path: &Vec<Slot>| {
-                let face = path.last().map_or(from, |&slot| left[far[slot]]);
-                let nearer = edges[face].iter().filter(|&&s| distance[left[far[s]]] == steps);
-                nearer.map(|&slot| path.iter().copied().chain([slot]).collect())
-            });
-            paths = longer.take(most).collect();
-        }
-        paths
+        distances
     }
 
-    /// Whether the ends are in different pieces.
-    fn is_apart(&self) -> bool {
-        let mut seen = vec![false; self.rest.far.len()];
-        let mut todo = vec![self.begin];
-        while let Some(slot) = todo.pop() {
-            if !std::mem::replace(&mut seen[slot], true) {
-                todo.push(self.rest.far[slot]);
-                if slot < self.begin {
-                    todo.push(turned(slot, 1));
+    /// A shortest path from end to end, if it crosses less than so many edges. A path is given by slots
+    /// whose edges it crosses from left to right.
+    fn shortest(&self, less_than: usize) -> Option<Vec<Slot>> {
+        let distances = self.distances();
+        // Where the strand joins two pieces there is nothing between.
+        match distances[self.faces.left[self.begin]] {
+            usize::MAX => Some(vec![]),
+            distance if distance < less_than => self.paths(&distances, distance, 1).pop(),
+            _ => None,
+        }
+    }
+
+    /// Up to `most` paths that enter no face twice and cross at most `longest` edges.
+    fn paths(&self, distances: &[usize], longest: usize, most: usize) -> Vec<Vec<Slot>> {
+        let (left, far) = (&self.faces.left, &self.rest.far);
+        let mut found = vec![];
+        let mut todo: Vec<Vec<Slot>> = vec![vec![]];
+        while let Some(path) = todo.pop() {
+            let begin = left[self.begin];
+            let face = path.last().map_or(begin, |&slot| left[far[slot]]);
+            if distances[face] == 0 {
+                found.push(path);
+                if found.len() == most {
+                    break;
+                }
+                continue;
+            }
+            for &edge in &self.around[face] {
+                let next = left[far[edge]];
+                let entered = next == begin || path.iter().any(|&slot| left[far[slot]] == next);
+                if !entered && distances[next].saturating_add(path.len() + 1) <= longest {
+                    todo.push(path.iter().copied().chain([edge]).collect());
                 }
             }
         }
-        !seen[self.end]
+        found
     }
 
     /// The diagram with the strand laid along a path.

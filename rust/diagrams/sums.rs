@@ -53,7 +53,8 @@ impl Diagram {
             .map(|slot| (left[slot], left[self.far[slot]], slot))
             .collect();
         sides.sort_unstable();
-        let pair = sides.windows(2).find(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1))?;
+        let pair =
+            sides.windows(2).find(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1))?;
         Some((pair[0].2, pair[1].2))
     }
 }

@@ -64,11 +64,7 @@ pub fn meeting(
 
 /// The HOMFLY polynomial: powers of alpha and z, and coefficients.
 #[pyfunction]
-pub fn homfly(
-    py: Python<'_>,
-    gauss: Code,
-    most: usize,
-) -> PyResult<Option<Vec<(i32, i32, i64)>>> {
+pub fn homfly(py: Python<'_>, gauss: Code, most: usize) -> PyResult<Option<Vec<(i32, i32, i64)>>> {
     let given = diagram(gauss)?;
     let found = released(py, || crate::diagrams::homfly::homfly(&given, most))?;
     Ok(found.map(|found| found.0.into_iter().map(|((a, z), value)| (a, z, value)).collect()))

@@ -59,6 +59,16 @@ def homfly_polynomial(gauss: Gauss) -> Polynomial | None:
     return None if terms is None else {(alpha, z): value for alpha, z, value in terms}
 
 
+def times(one: Polynomial, other: Polynomial) -> Polynomial:
+    """Return the product of two polynomials."""
+    product: Polynomial = {}
+    for (alpha, z), value in one.items():
+        for (more_alpha, more_z), factor in other.items():
+            power = alpha + more_alpha, z + more_z
+            product[power] = product.get(power, 0) + value * factor
+    return {power: value for power, value in product.items() if value}
+
+
 def written(polynomial: Polynomial) -> str:
     """Write a polynomial as Regina does, with x for alpha and y for z: "2 x^-2 - x^-4"."""
     text = ""

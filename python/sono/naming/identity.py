@@ -9,7 +9,7 @@ import cmath
 import math
 import re
 from dataclasses import dataclass
-from itertools import product
+from itertools import islice, product
 
 import numpy as np
 
@@ -18,11 +18,13 @@ from sono.curve import Components
 from sono.invariants.crossings import diagram, linking_matrix, planar_diagram
 from sono.invariants.diagrams import (
     Gauss,
+    Polynomial,
     alexander_polynomial,
     as_crossings,
     gauss_code,
     homfly_polynomial,
     shortened,
+    times,
     written,
 )
 from sono.invariants.identify import ORDERS
@@ -31,11 +33,11 @@ from sono.invariants.signatures import signature
 from sono.naming.known import Type, sharing
 from sono.records import Record
 
-MOST_SIMPLER = 60
-"""Diagrams that are looked through for one with fewer crossings."""
+MOST_SIMPLER, MOST_PROOF = 1_000, 10_000
+"""Diagrams that are looked at, for one with fewer crossings and for a proof; 10,000 take a third of a second."""
 
-MOST_PROOF = 400
-"""Diagrams, on either side, that a proof looks through."""
+MOST_CROSSINGS = 20
+"""Crossings of a part up to which one that has no name gets a second look."""
 
 MOST_NAMES = 100
 """Names of a sum, each of whose parts may have several."""
@@ -86,11 +88,12 @@ def identify(curve: Components) -> Identity:
     """
     gauss = shortened(gauss_code(diagram(curve)))
     found = as_crossings(gauss)
-    names, proven = _named(_core.pieces(gauss, MOST_SIMPLER))
-    polynomial = homfly_polynomial(gauss)
+    pieces = _pieces(gauss)
+    names = _names([[prime.names for prime in piece] for piece in pieces])
+    polynomial = _polynomial(pieces)
     return Identity(
         names=names,
-        proven=proven,
+        proven=bool(names) and all(prime.proven for piece in pieces for prime in piece),
         components=len(curve),
         crossings=len(found.sign),
         determinant=round(alexander(found, -1)),
@@ -102,33 +105,59 @@ def identify(curve: Components) -> Identity:
     )
 
 
-def _named(pieces: list[list[Gauss]]) -> tuple[tuple[str, ...], bool]:
-    """Return the names of what is made of these parts, and whether they are proven."""
-    known = {id(prime): _known(prime) for piece in pieces for prime in piece}
-    ways = product(*(known[id(prime)][0] for piece in pieces for prime in piece))
+@dataclass(frozen=True)
+class _Prime:
+    """A prime part: its names, whether one is proven, and its HOMFLY polynomial, if it is known."""
+
+    crossings: int
+    polynomial: Polynomial | None
+    names: list[str]
+    proven: bool
+
+
+def _pieces(gauss: Gauss) -> list[list[_Prime]]:
+    """Return the prime parts of each piece that is apart."""
+    pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_SIMPLER)]
+    unknown = [prime.crossings for piece in pieces for prime in piece if not prime.names]
+    if unknown and max(unknown) <= MOST_CROSSINGS:
+        pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_PROOF)]
+    return pieces
+
+
+def _known(prime: Gauss) -> _Prime:
+    polynomial = homfly_polynomial(prime)
+    types = sharing(polynomial) if polynomial else []
+    at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
+    if at is not None:
+        return _Prime(types[at].crossings, polynomial, [types[at].name], True)
+    return _Prime(len(prime[1]), polynomial, [type.name for type in types if _may_be(prime, type)], False)
+
+
+def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
+    """Return the names of what is made of parts that may have these names."""
     names: dict[str, None] = {}
-    for way in ways:
+    for way in islice(product(*(choices for piece in pieces for choices in piece)), MOST_NAMES):
         parts = iter(way)
         sums = ["#".join(sorted((next(parts) for _ in piece), key=_order)) or "0_1" for piece in pieces]
         names["+".join(sorted(sums, key=_order))] = None
-        if len(names) == MOST_NAMES:
-            break
-    return tuple(names), all(proven for _, proven in known.values())
+    return tuple(names)
+
+
+def _polynomial(pieces: list[list[_Prime]]) -> Polynomial | None:
+    """Return the HOMFLY polynomial of the whole, if it is known."""
+    factors = [prime.polynomial for piece in pieces for prime in piece]
+    factors += [{(1, -1): 1, (-1, -1): -1}] * (len(pieces) - 1)
+    found: Polynomial = {(0, 0): 1}
+    for factor in factors:
+        if factor is None:
+            return None
+        found = times(found, factor)
+    return found
 
 
 def _order(name: str) -> tuple[list[int], str]:
     """Return by what names are sorted: crossings and numbers first."""
     return [int(number) for number in re.findall(r"\d+", name)], name
-
-
-def _known(prime: Gauss) -> tuple[list[str], bool]:
-    """Return the names that a prime part may have, and whether there is one that is proven."""
-    polynomial = homfly_polynomial(prime)
-    types = sharing(polynomial) if polynomial else []
-    at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
-    if at is not None:
-        return [types[at].name], True
-    return [type.name for type in types if _may_be(prime, type)], False
 
 
 def _may_be(prime: Gauss, type: Type) -> bool:
