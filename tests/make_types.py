@@ -26,7 +26,7 @@ HEAD = """\
 # in sono/naming/letters.py. "=" ends those of types whose mirror images are named without m.
 name\tkey\tdiagram
 """
-MOST = 2_000
+MOST = 20_000
 """Diagrams that are looked at to tell whether two links are the same."""
 
 

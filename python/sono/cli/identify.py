@@ -24,8 +24,8 @@ def command(sources: tuple[str, ...], pd: bool, shown: options.Shown) -> None:
 
     Names are those of KnotInfo for prime knots to 13 crossings and of LinkInfo for prime links to 9; m is the
     mirror image, # a connected sum, + stands between parts that are not linked. A name is proven where moves
-    make the table's diagram of the curve's, which is more than equal invariants. Where these are all, all
-    knots that share them are named; a dash says that the table has no such knot.
+    make the table's diagram of the curve's; where only invariants tell, all knots that share them are named.
+    What is not in the table has no name, and an undecided one has too many crossings.
 
     Further columns are components, determinant, signature, linking (numbers), alexander and homfly, which is
     in Regina's alpha (x) and z (y). The crossings are those of the curve's simplified diagram. Its PD code
@@ -73,9 +73,8 @@ def _identified(source: str) -> "tuple[str, Identity]":
 
 def row(name: str, found: "Identity") -> tables.Row:
     """Return the row of a curve."""
-    known = "proven" if found.proven else "invariants" if found.names else None
     linking = " ".join(map(str, found.linking)) or None
-    return {**found.to_dict(), "file": name, "knot": found.name, "known": known, "linking": linking}
+    return {**found.to_dict(), "file": name, "knot": found.name, "linking": linking}
 
 
 def _write_pd(name: str, found: "Identity", shown: options.Shown) -> None:

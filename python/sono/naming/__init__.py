@@ -1,6 +1,6 @@
 """What knot or link a curve is, by name.
 
-May import `curve` and `invariants`.
+May import `curve`, `invariants` and `records`.
 """
 
 from sono.naming.identity import Identity, identify

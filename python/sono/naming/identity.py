@@ -10,6 +10,7 @@ import math
 import re
 from dataclasses import dataclass
 from itertools import islice, product
+from typing import Literal
 
 import numpy as np
 
@@ -34,7 +35,7 @@ from sono.naming.known import Type, sharing
 from sono.records import Record
 
 MOST_SIMPLER, MOST_PROOF = 1_000, 10_000
-"""Diagrams that are looked at, for one with fewer crossings and for a proof; 10,000 take a third of a second."""
+"""Diagrams that are looked at, for one with fewer crossings and for a proof; 10,000 take some 0.3 s."""
 
 MOST_CROSSINGS = 20
 """Crossings of a part up to which one that has no name gets a second look."""
@@ -47,10 +48,11 @@ MOST_NAMES = 100
 class Identity(Record):
     """What knot or link a curve is, and what tells it.
 
-    `names` are those of all types to 13 crossings (links to 9) that it may be, none where the table has no
-    such type; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not linked. If
-    `proven`, moves make the table's diagrams of the curve's, and there is one name; otherwise the invariants
-    tell. A sum of links does not say which of their components are joined.
+    `names` are those of all types in the table, prime knots to 13 crossings, prime links to 9 and their sums,
+    that it may be; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not linked.
+    A sum of links does not say which of their components are joined. `known` tells how: "proven" where moves
+    make the table's diagrams of the curve's, and there is one name; "invariants" where these agree;
+    "not in the table"; or "undecided" where its HOMFLY polynomial takes too long.
 
     `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
     the incoming lower one. `crossings` counts its crossings. `linking` has the linking numbers of all pairs
@@ -64,7 +66,7 @@ class Identity(Record):
     """
 
     names: tuple[str, ...]
-    proven: bool
+    known: Literal["proven", "invariants", "not in the table", "undecided"]
     components: int
     crossings: int
     determinant: int
@@ -78,6 +80,11 @@ class Identity(Record):
     def name(self) -> str | None:
         """The name, or all of them, with "or" between; None where the table has no such type."""
         return " or ".join(self.names) or None
+
+    @property
+    def proven(self) -> bool:
+        """Whether the name is proven."""
+        return self.known == "proven"
 
 
 def identify(curve: Components) -> Identity:
@@ -93,7 +100,7 @@ def identify(curve: Components) -> Identity:
     polynomial = _polynomial(pieces)
     return Identity(
         names=names,
-        proven=bool(names) and all(prime.proven for piece in pieces for prime in piece),
+        known=_how([prime for piece in pieces for prime in piece]),
         components=len(curve),
         crossings=len(found.sign),
         determinant=round(alexander(found, -1)),
@@ -107,12 +114,25 @@ def identify(curve: Components) -> Identity:
 
 @dataclass(frozen=True)
 class _Prime:
-    """A prime part: its names, whether one is proven, and its HOMFLY polynomial, if it is known."""
+    """A prime part: its names, whether one is proven, and its HOMFLY polynomial, if it is known.
+
+    It `is_new` where the table cannot have it.
+    """
 
     crossings: int
+    is_new: bool
     polynomial: Polynomial | None
     names: list[str]
     proven: bool
+
+
+def _how(primes: list[_Prime]) -> Literal["proven", "invariants", "not in the table", "undecided"]:
+    """Tell how these parts are known."""
+    if all(prime.proven for prime in primes):
+        return "proven"
+    if all(prime.names for prime in primes):
+        return "invariants"
+    return "not in the table" if any(prime.is_new for prime in primes) else "undecided"
 
 
 def _pieces(gauss: Gauss) -> list[list[_Prime]]:
@@ -125,12 +145,14 @@ def _pieces(gauss: Gauss) -> list[list[_Prime]]:
 
 
 def _known(prime: Gauss) -> _Prime:
-    polynomial = homfly_polynomial(prime)
+    polynomial, crossings = homfly_polynomial(prime), len(prime[1])
     types = sharing(polynomial) if polynomial else []
     at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
     if at is not None:
-        return _Prime(types[at].crossings, polynomial, [types[at].name], True)
-    return _Prime(len(prime[1]), polynomial, [type.name for type in types if _may_be(prime, type)], False)
+        return _Prime(types[at].crossings, False, polynomial, [types[at].name], True)
+    names = [type.name for type in types if _may_be(prime, type)]
+    is_new = not names and (polynomial is not None or _is_alternating(prime))
+    return _Prime(crossings, is_new, polynomial, names, False)
 
 
 def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:

@@ -64,7 +64,7 @@ COLUMNS = {
         Column("l_c_fine", "L_c(fine)", "$L_c$ (fine)", ".6f", 11),
         Column("seed", "seed", "seed", "d", 6),
         Column("type", "type", "type", "", 9),
-        Column("known", "known", "known", "", 10),
+        Column("known", "known", "known", "", 16),
         Column("crossings", "crossings", "crossings", "d", 9),
         Column("determinant", "determinant", "determinant", "d", 11),
         Column("signature", "signature", "signature", "d", 9),
