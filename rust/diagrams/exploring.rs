@@ -146,3 +146,76 @@ pub fn meeting(diagram: &Diagram, others: &[Diagram], most: usize) -> Option<usi
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+    use crate::diagrams::gauss::tests::{SOME, diagram};
+    use crate::diagrams::homfly::homfly;
+
+    /// A diagram of the same link after random moves.
+    fn entangled(diagram: &Diagram, seed: u64) -> Diagram {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        (0..5).fold(diagram.clone(), |diagram, _| {
+            let more = if diagram.crossings() > 16 { 0 } else { 2 };
+            let mut next: Vec<_> =
+                diagram.flyped().into_iter().chain(diagram.passed(more)).collect();
+            next.retain(Diagram::is_connected);
+            if next.is_empty() {
+                diagram
+            } else {
+                next.swap_remove(rng.random_range(0..next.len()))
+            }
+        })
+    }
+
+    #[test]
+    fn moves_keep_the_polynomial_and_the_components() {
+        for (passages, right) in SOME {
+            let one = diagram(passages, right);
+            for seed in 0..20 {
+                let other = entangled(&one, seed);
+                assert_eq!(homfly(&other, 9999), homfly(&one, 9999), "{other:?}");
+                assert_eq!(other.components(), passages.len());
+                let again = other.gauss(passages.len()).diagram().expect("a diagram on the sphere");
+                assert_eq!(again.code(), other.code());
+            }
+        }
+    }
+
+    #[test]
+    fn diagrams_of_one_link_meet_and_those_of_mirror_images_do_not() {
+        for (passages, right) in SOME {
+            let one = diagram(passages, right);
+            let mirror_image = one.mirrored();
+            let is_chiral = homfly(&one, 9999) != homfly(&mirror_image, 9999);
+            for seed in 0..5 {
+                let parts = pieces(&entangled(&one, seed), 1000);
+                assert_eq!((parts.len(), parts[0].primes.len()), (1, 1));
+                let other = &parts[0].primes[0];
+                assert_eq!(other.crossings(), one.crossings());
+                let sides = [mirror_image.clone(), one.clone()];
+                assert_eq!(
+                    meeting(other, &sides[usize::from(!is_chiral)..], 1000),
+                    Some(is_chiral.into())
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn sums_and_pieces_come_apart() {
+        // A trefoil, a kink, a figure-eight knot on one strand; and a circle that lies below it all.
+        let along = [-1, 2, -3, 1, -2, 3, 4, -4, -5, 7, -6, 8, -7, 5, -8, 6, 9, 10];
+        let sum = diagram(&[&along, &[-9, -10], &[]], "rrrrrlrlrl");
+        let parts = pieces(&sum, 100);
+        let mut sizes: Vec<Vec<_>> =
+            parts.iter().map(|p| p.primes.iter().map(Diagram::crossings).collect()).collect();
+        sizes.iter_mut().for_each(|sizes| sizes.sort_unstable());
+        sizes.sort_unstable();
+        assert_eq!(sizes, [vec![], vec![], vec![3, 4]]);
+    }
+}

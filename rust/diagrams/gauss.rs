@@ -81,3 +81,54 @@ impl Diagram {
         [(under, opposite(over)), (over, opposite(under))]
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// The knots 3_1, 4_1, 8_19 and 10_132, the links L5a1 and L6n1: Gauss codes and hands.
+    pub const SOME: [(&[&[i32]], &str); 6] = [
+        (&[&[-1, 2, -3, 1, -2, 3]], "rrr"),
+        (&[&[-1, 3, -2, 4, -3, 1, -4, 2]], "rlrl"),
+        (&[&[-1, 8, 2, -5, 3, -7, 4, -2, 5, -3, -6, 1, 7, -4, -8, 6]], "rrrrrrrr"),
+        (
+            &[&[-1, 5, -2, 9, -3, 6, -4, 1, -5, 4, -6, 3, 7, -10, 8, -7, -9, 2, 10, -8]],
+            "llllllrrlr",
+        ),
+        (&[&[-1, 3, -2, 5, -3, 4], &[-4, 1, -5, 2]], "lrllr"),
+        (&[&[-1, 3, 2, -4], &[-3, -6, 4, 5], &[-5, 1, 6, -2]], "llrrrr"),
+    ];
+
+    fn gauss(passages: &[&[i32]], right: &str) -> Gauss {
+        let passage = |&number: &i32| (number.unsigned_abs() as usize - 1, number > 0);
+        let passages = passages.iter().map(|along| along.iter().map(passage).collect()).collect();
+        Gauss { passages, right: right.chars().map(|hand| hand == 'r').collect() }
+    }
+
+    pub fn diagram(passages: &[&[i32]], right: &str) -> Diagram {
+        gauss(passages, right).diagram().expect("a diagram on the sphere")
+    }
+
+    #[test]
+    fn codes_give_the_diagrams_they_are_of() {
+        for (passages, right) in SOME {
+            let one = diagram(passages, right);
+            let code = one.gauss(passages.len());
+            assert_eq!(code.right, gauss(passages, right).right);
+            assert_eq!(code.diagram().expect("a diagram on the sphere").code(), one.code());
+        }
+    }
+
+    #[test]
+    fn what_is_no_diagram_is_refused() {
+        for (passages, right) in [
+            (&[1, 2, -1, -2][..], "rr"),
+            (&[1, 1], "r"),
+            (&[1, -2], "rr"),
+            (&[1, -1, 2], "rr"),
+            (&[-1, 2, -3, 1, -2, 3], "rrl"),
+        ] {
+            assert_eq!(gauss(&[passages], right).diagram(), None);
+        }
+    }
+}

@@ -132,3 +132,37 @@ impl Diagram {
         smoothed
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::diagrams::gauss::tests::{SOME, diagram};
+
+    #[test]
+    fn the_right_handed_trefoil() {
+        let (passages, right) = SOME[0];
+        let expected = BTreeMap::from([((-4, 0), -1), ((-2, 0), 2), ((-2, 2), 1)]);
+        assert_eq!(homfly(&diagram(passages, right), 9), Some(Polynomial(expected)));
+    }
+
+    #[test]
+    fn mirror_images_exchange_alpha_and_its_inverse() {
+        for (passages, right) in SOME {
+            let one = diagram(passages, right);
+            let mirrored = homfly(&one.mirrored(), 999).unwrap().0;
+            let expected =
+                homfly(&one, 999).unwrap().0.into_iter().map(|((alpha, z), value)| {
+                    ((-alpha, z), if z % 2 == 0 { value } else { -value })
+                });
+            assert_eq!(mirrored, expected.collect());
+        }
+    }
+
+    #[test]
+    fn too_large_ones_are_not_waited_for() {
+        let (passages, right) = SOME[3];
+        assert_eq!(homfly(&diagram(passages, right), 1), None);
+    }
+}
