@@ -125,7 +125,13 @@ def test_homfly_polynomials_of_the_tables() -> None:
 
 
 def test_alexander_polynomials() -> None:
-    known = {"3_1": "t^2 - t + 1", "4_1": "t^2 - 3 t + 1", "10_153": "t^6 - t^5 - t^4 + 3 t^3 - t^2 - t + 1", "Hopf": "t - 1", "8_19#m3_1": None}
+    known = {
+        "3_1": "t^2 - t + 1",
+        "4_1": "t^2 - 3 t + 1",
+        "10_153": "t^6 - t^5 - t^4 + 3 t^3 - t^2 - t + 1",
+        "Hopf": "t - 1",
+        "8_19#m3_1": None,
+    }
     for name, expected in known.items():
         found = identify(start(name))
         assert expected is None or found.alexander == expected

@@ -45,8 +45,8 @@ impl Diagram {
         let over = |slot: Slot| (slot & !3) | (3 - slot % 4);
         let moved = |slot: Slot| if inside[slot / 4] { over(slot) } else { slot };
         let mut turned = self.clone();
-        for slot in 0..far.len() {
-            turned.far[moved(slot)] = moved(far[slot]);
+        for (slot, &other) in far.iter().enumerate() {
+            turned.far[moved(slot)] = moved(other);
             turned.inward[moved(slot)] = self.inward[slot];
             turned.component[moved(slot)] = self.component[slot];
         }

@@ -52,7 +52,8 @@ class Identity(Record):
     that it may be; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not linked.
     A sum of links does not say which of their components are joined. `known` tells how: "proven" where moves
     make the table's diagrams of the curve's, and there is one name; "invariants" where these agree;
-    "not in the table"; or "undecided" where its HOMFLY polynomial takes too long.
+    "not in the table", for which a sum that its diagram hides is taken too; or "undecided" where its HOMFLY
+    polynomial takes too long.
 
     `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
     the incoming lower one. `crossings` counts its crossings. `linking` has the linking numbers of all pairs
@@ -94,8 +95,10 @@ def identify(curve: Components) -> Identity:
     the table's diagrams of them.
     """
     gauss = shortened(gauss_code(diagram(curve)))
-    found = as_crossings(gauss)
     pieces = _pieces(gauss)
+    if len(curve) == 1 and len(pieces[0]) == 1:
+        gauss = pieces[0][0].diagram
+    found = as_crossings(gauss)
     names = _names([[prime.names for prime in piece] for piece in pieces])
     polynomial = _polynomial(pieces)
     return Identity(
@@ -114,12 +117,12 @@ def identify(curve: Components) -> Identity:
 
 @dataclass(frozen=True)
 class _Prime:
-    """A prime part: its names, whether one is proven, and its HOMFLY polynomial, if it is known.
+    """A prime part: its smallest diagram, names, whether one is proven, and HOMFLY polynomial, if known.
 
     It `is_new` where the table cannot have it.
     """
 
-    crossings: int
+    diagram: Gauss
     is_new: bool
     polynomial: Polynomial | None
     names: list[str]
@@ -138,21 +141,22 @@ def _how(primes: list[_Prime]) -> Literal["proven", "invariants", "not in the ta
 def _pieces(gauss: Gauss) -> list[list[_Prime]]:
     """Return the prime parts of each piece that is apart."""
     pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_SIMPLER)]
-    unknown = [prime.crossings for piece in pieces for prime in piece if not prime.names]
+    unknown = [len(prime.diagram[1]) for piece in pieces for prime in piece if not prime.names]
     if unknown and max(unknown) <= MOST_CROSSINGS:
         pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_PROOF)]
     return pieces
 
 
 def _known(prime: Gauss) -> _Prime:
-    polynomial, crossings = homfly_polynomial(prime), len(prime[1])
+    polynomial = homfly_polynomial(prime)
     types = sharing(polynomial) if polynomial else []
     at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
     if at is not None:
-        return _Prime(types[at].crossings, False, polynomial, [types[at].name], True)
+        smallest = min(prime, types[at].diagram, key=lambda gauss: len(gauss[1]))
+        return _Prime(smallest, False, polynomial, [types[at].name], True)
     names = [type.name for type in types if _may_be(prime, type)]
     is_new = not names and (polynomial is not None or _is_alternating(prime))
-    return _Prime(crossings, is_new, polynomial, names, False)
+    return _Prime(prime, is_new, polynomial, names, False)
 
 
 def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
