@@ -28,7 +28,9 @@ struct Lifted {
 impl Diagram {
     /// The diagram after passes to fewer crossings, until there are none.
     pub fn shortened(mut self) -> Self {
-        while let Some(shorter) = self.shorter() {
+        let mut begin = 0;
+        while let Some((at, shorter)) = self.shorter_from(begin) {
+            begin = at;
             self = shorter;
         }
         self
@@ -36,12 +38,19 @@ impl Diagram {
 
     /// The diagram after a pass to fewer crossings, if there is one.
     pub fn shorter(&self) -> Option<Self> {
+        Some(self.shorter_from(0)?.1)
+    }
+
+    /// The same, runs of this number and more first, and the number of the run.
+    fn shorter_from(&self, begin: usize) -> Option<(usize, Self)> {
         if let Some(apart) = self.without_layers() {
-            return Some(apart);
+            return Some((begin, apart));
         }
-        self.runs().iter().find_map(|run| {
-            let lifted = self.lifted(run);
-            lifted.shortest(run.len()).map(|path| lifted.laid(&path))
+        let runs = self.runs();
+        let begin = begin.min(runs.len());
+        (begin..runs.len()).chain(0..begin).find_map(|at| {
+            let lifted = self.lifted(&runs[at]);
+            lifted.shortest(runs[at].len()).map(|path| (at, lifted.laid(&path)))
         })
     }
 
