@@ -9,6 +9,7 @@ and its coordinates are whole thousandths of the radius.
 """
 
 import io
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -83,5 +84,10 @@ def packed(shapes: Mapping[str, Shape]) -> bytes:
         arrays[f"{knot}/steps"] = np.vstack(steps).astype(np.int16)
         arrays[f"{knot}/begin"] = np.array([[len(v), *v[0]] for v in whole], np.int32)
     data = io.BytesIO()
-    np.savez_compressed(data, **arrays)
+    with zipfile.ZipFile(data, "w") as archive:
+        for name, array in arrays.items():
+            member = io.BytesIO()
+            np.save(member, array)
+            # With no time of writing, so that the same shapes are the same bytes.
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy"), member.getvalue(), zipfile.ZIP_DEFLATED, 9)
     return data.getvalue()
