@@ -55,13 +55,9 @@ class Source:
 
     @property
     def name(self) -> str:
-<<<<<<< HEAD
         """What the curve is called in tables: its file's name without folder and suffix, and its key."""
         if self.knot:
             return _shortened(self.knot)
-=======
-        """What the curve is called in tables: as a knot, or its file's name without folder and suffix, and key."""
->>>>>>> work-formats
         stem, key = self._parts()
         return stem if key is None else f"{stem}:{key}"
 
@@ -74,8 +70,6 @@ class Source:
         return stem if key is None else f"{stem}.{_UNSAFE.sub('_', key)}"
 
     def _parts(self) -> tuple[str, str | None]:
-        if self.knot:
-            return self.knot, None
         path, key = formats.split(self.given)
         return ("stdin" if path == "-" else PurePath(formats.unpacked(path)).stem), key
 
