@@ -7,6 +7,7 @@
 //! `sono` and `polish` do not know each other; only `python` knows of Python.
 
 pub mod beads;
+pub mod diagrams;
 pub mod error;
 pub mod geometry;
 pub mod invariants;

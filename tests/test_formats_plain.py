@@ -203,7 +203,7 @@ def archive(**members: bytes) -> bytes:
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as file:
         for name, data in members.items():
-            file.writestr(name.replace("_npy", ".npy"), data)
+            file.writestr(zipfile.ZipInfo(name.replace("_npy", ".npy")), data)  # of no time, as ids need
     return stream.getvalue()
 
 

@@ -40,6 +40,10 @@ def test_mirror_images_and_names_in_any_case() -> None:
     assert shape
     assert mirrored
     assert np.array_equal(mirrored[0], shape[0] * [1, 1, -1])
+    for spelling in ("8.20", "K8n1", "8:1:20"):
+        again = starts.known(spelling)
+        assert again
+        assert np.array_equal(again[0], shape[0])
     assert starts.known("8_22") is starts.known("m") is starts.known("T(2,59)") is None
 
 

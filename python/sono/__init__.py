@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from sono.calls import Comparison as Comparison
     from sono.calls import compare as compare
     from sono.calls import forces as forces
+    from sono.calls import identify as identify
     from sono.calls import measure as measure
     from sono.calls import names as names
     from sono.calls import read as read
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from sono.curve import Forces as Forces
     from sono.curve import Measures as Measures
     from sono.formats import FormatError as FormatError
+    from sono.invariants import TooEntangledError as TooEntangledError
+    from sono.naming import Identity as Identity
     from sono.searching import Minimum as Minimum
     from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
@@ -46,6 +49,8 @@ _HOMES = {
     "Forces": "sono.curve",
     "Measures": "sono.curve",
     "FormatError": "sono.formats",
+    "Identity": "sono.naming",
+    "TooEntangledError": "sono.invariants",
     "KnotTypeError": "sono.tightening",
     "Settings": "sono.tightening",
     "Progress": "sono.tightening",
@@ -55,6 +60,7 @@ _HOMES = {
     "Comparison": "sono.calls",
     "compare": "sono.calls",
     "forces": "sono.calls",
+    "identify": "sono.calls",
     "measure": "sono.calls",
     "names": "sono.calls",
     "read": "sono.calls",

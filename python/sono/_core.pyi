@@ -23,14 +23,22 @@ __all__ = [
     "default_polish_settings",
     "default_settings",
     "determinant",
+    "homfly",
     "loosen",
     "measure",
+    "meeting",
+    "pieces",
     "refine",
+    "shortened",
     "simplify",
 ]
 
 _Curve: TypeAlias = Sequence[NDArray[np.float64]]
 _Components: TypeAlias = list[NDArray[np.float64]]
+_Gauss: TypeAlias = tuple[list[list[int]], list[bool]]
+"""A diagram: for each component the crossings that it passes, from 1, negative where it does so below, and
+for each crossing whether it is right-handed. Any other code raises `ValueError`."""
+
 _Outcome: TypeAlias = Literal["running", "tight", "stuck"]
 _Stage: TypeAlias = Literal["loosen", "collapse", "anneal", "reanneal", "settle"]
 _Forces: TypeAlias = tuple[
@@ -196,6 +204,18 @@ def balance(components: _Curve) -> _Forces:
 def measure(components: _Curve) -> _Measures:
     """Return what a curve measures. Raises `CurveError` where edges meet."""
 
+def meeting(gauss: _Gauss, others: Sequence[_Gauss], most: int) -> int | None:
+    """Return which of others moves make of a connected diagram, of at most 62 crossings.
+
+    None if this is not seen on `most` diagrams on either side. All components may be reversed together.
+    """
+
+def pieces(gauss: _Gauss, most: int) -> list[list[_Gauss]]:
+    """Return the prime summands of each piece of a link that is apart; an unknot has none.
+
+    Some may not be prime: up to `most` diagrams of the same size are looked through for fewer crossings.
+    """
+
 def refine(components: _Curve, n: int) -> _Components:
     """Return the inscribed knot at `n` vertices, all chords of a component equal.
 
@@ -224,10 +244,22 @@ def determinant(n: int, entries: list[tuple[int, int, int]]) -> int:
     Entries are (row, column, value >= 0); those in one place add up. Raises `ValueError` for one outside.
     """
 
+def homfly(gauss: _Gauss, most: int) -> list[tuple[int, int, int]] | None:
+    """Return the HOMFLY polynomial: powers of alpha and z, and the coefficients that are not 0.
+
+    None if it takes over `most` diagrams. alpha P(right-handed) - P(left-handed)/alpha = z P(smoothed).
+    """
+
 def loosen(components: _Curve) -> _Components:
     """Return a curve of the same type that holds a thick rope, by exact isotopy.
 
     Raises `CurveError` where edges meet, or over 20,000 crossings are left.
+    """
+
+def shortened(gauss: _Gauss) -> _Gauss:
+    """Return the diagram after strands above all others, or below, have been laid as short as they get.
+
+    Components stay in order and oriented as they were.
     """
 
 def simplify(components: _Curve) -> _Components:

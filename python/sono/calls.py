@@ -13,11 +13,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, TypeAlias, cast
 
-from sono import _core, curve, formats, starts
+from sono import _core, curve, formats, naming, starts
 from sono.curve import Curve as Curve
 from sono.curve import CurveLike, Forces, Measures, as_components
 from sono.formats.closing import WAYS, Close
 from sono.jobs.workers import Threads
+from sono.naming import Identity
 from sono.records import Record
 from sono.searching.minima import Minimum, merged
 from sono.searching.search import KEPT, Search
@@ -136,6 +137,18 @@ def forces(vertices: Rope) -> Forces:
     True
     """
     return curve.forces(_components(vertices))
+
+
+def identify(vertices: Rope) -> Identity:
+    """Name the knot or link that a curve is, of any scale; see `Identity`.
+
+    Raises `CurveError` for a curve that is not embedded, `TooEntangledError`, a `ValueError`, where over 1000
+    crossings are left in its diagram.
+
+    >>> identify("T(3,4)").name, identify("4_1#m3_1").name, identify("T(2,15)").name
+    ('8_19', 'm3_1#4_1', None)
+    """
+    return naming.identify(_components(vertices))
 
 
 def tighten(

@@ -3,6 +3,7 @@
 
 mod collapse;
 mod curve;
+mod diagrams;
 mod dict;
 mod engine;
 mod errors;
@@ -23,6 +24,8 @@ mod _core {
     use super::collapse::Collapse;
     #[pymodule_export]
     use super::curve::{loosen, refine, simplify};
+    #[pymodule_export]
+    use super::diagrams::{homfly, meeting, pieces, shortened};
     #[pymodule_export]
     use super::engine::{default_polish_settings, default_settings};
     #[pymodule_export]

@@ -1,6 +1,7 @@
 """The command line: one module a command, imported when it is used.
 
-May import `curve`, `formats`, `jobs`, `patience`, `printing`, `starts`, `tables` and `tightening`.
+May import `curve`, `formats`, `invariants`, `jobs`, `naming`, `patience`, `printing`, `starts`, `tables` and
+`tightening`.
 """
 
 import io
@@ -20,6 +21,7 @@ COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",
     "compare": "Compare ropelengths with the published ones.",
     "convert": "Write curves in another format.",
+    "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
     "search": "Find the shortest tight rope of a knot.",
     "start": "Write the starting conformation of a knot.",

@@ -30,16 +30,37 @@ def files(function: Function) -> Function:
     return click.argument("sources", metavar="FILE...", nargs=-1, required=True)(function)
 
 
+def codes(function: Function) -> Function:
+    """`--pd`, `--dt` and `--gauss`, as names in `codes`."""
+
+    @click.option(
+        "--pd", multiple=True, metavar="CODE", help='A diagram: "X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]".'
+    )
+    @click.option(
+        "--dt", multiple=True, metavar="CODE", help='A diagram: "4 6 2", or "[[6,8],[2,4]]" of a link.'
+    )
+    @click.option(
+        "--gauss", multiple=True, metavar="CODE", help='A diagram: "1 -2 3 -1 2 -3", or "1 -2 | 2 -1".'
+    )
+    @functools.wraps(function)
+    def command(pd: tuple[str, ...], dt: tuple[str, ...], gauss: tuple[str, ...], **more: object) -> object:
+        given = (("pd", pd), ("dt", dt), ("gauss", gauss))
+        return function(codes=[f"{kind}:{code}" for kind, written in given for code in written], **more)
+
+    return cast("Function", command)
+
+
 def knots(function: Function) -> Function:
-    """Files or names of knots, as arguments and from `--list`: curves, which `--shard` takes part of."""
+    """Names, codes or files of knots, as arguments and from `--list`, of which `--shard` takes a part."""
 
     @click.argument("arguments", metavar="[FILE|NAME]...", nargs=-1)
+    @codes
     @click.option(
         "--list",
         "list_file",
         metavar="FILE",
         type=click.Path(allow_dash=True, dir_okay=False, exists=True),
-        help="More files or names, one a line; # begins a comment.",
+        help="More files or names, one a line; # after a space or at the beginning of one begins a comment.",
     )
     @click.option(
         "--shard",
@@ -50,11 +71,17 @@ def knots(function: Function) -> Function:
     @close
     @functools.wraps(function)
     def command(
-        *, arguments: tuple[str, ...], list_file: str | None, shard: slice, close: "Close", **more: object
+        *,
+        arguments: tuple[str, ...],
+        codes: list[str],
+        list_file: str | None,
+        shard: slice,
+        close: "Close",
+        **more: object,
     ) -> object:
         from sono.jobs.sources import curves  # here, since numpy would make --help wait
 
-        given = [*arguments, *(_listed(list_file) if list_file else [])]
+        given = [*arguments, *codes, *(_listed(list_file) if list_file else [])]
         if not given:
             raise click.UsageError("give a FILE or the NAME of a knot, or a --list of them")
         sources = [curve for source in given for curve in curves(source, close)]
@@ -76,7 +103,7 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> sli
 def _listed(path: str) -> list[str]:
     try:
         with click.open_file(path, encoding="utf-8", errors="surrogateescape") as lines:
-            words = (line.split("#")[0].strip() for line in lines)
+            words = (re.split(r"(?:^|\s)#", line)[0].strip() for line in lines)
             return [word for word in words if word]
     except OSError as error:
         raise click.UsageError(f"{path}: cannot be read: {error.strerror}") from error

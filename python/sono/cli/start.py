@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from sono.cli import options, places
+
 if TYPE_CHECKING:
     from sono.curve import Components
 
 
 @click.command("start")
 @click.argument("name", required=False)
+@options.codes
 @click.option("--braid", "word", metavar="WORD", help='Closure of a braid word such as "1 -2 1 -2".')
 @click.option(
     "--variant",
@@ -34,6 +37,7 @@ if TYPE_CHECKING:
 @click.option("--force", is_flag=True, help="Overwrite FILE.")
 def command(
     name: str | None,
+    codes: list[str],
     word: str | None,
     variant: int,
     scramble_seed: int | None,
@@ -45,21 +49,24 @@ def command(
     """Write the starting conformation of a knot or link.
 
     NAME is a knot of KnotInfo's table (8_20, or m8_20 for its mirror image; 11a_1 needs the extra
-    sono[knotinfo]), a torus knot or link ("T(2,5)", negative for the mirror image), Hopf, or chain3; --list
+    sono[knotinfo]), a link (L5a1, 5^2_1, Hopf), a torus knot or link ("T(2,5)", negative for the mirror
+    image), a pretzel ("P(-2,3,7)"), a two-bridge link (5/2, "C(3,2)"), chain3, or a sum (3_1#m3_1); --list
     has those that are built in.
     """
     # Imported here, since numpy would make --help wait.
     from sono import formats, starts
-    from sono.cli import options, places
+    from sono.cli import options
     from sono.starts.scramble import scramble
 
     if list_names:
-        if name or word or output != "-":
+        if name or codes or word or output != "-":
             raise click.UsageError("--list stands alone")
         click.echo("\n".join(starts.names()))
         return
-    if (name is None) == (word is None):
-        raise click.UsageError("give either a NAME or a --braid word")
+    given = [text for text in (name, *codes, word) if text is not None]
+    if len(given) != 1:
+        raise click.UsageError("give one NAME, a --pd, --dt or --gauss code, or a --braid word")
+    name = given[0] if word is None else None
     if word is not None and variant < 0:
         raise click.UsageError(f"--variant {variant}: a braid word has no planar diagram; give 0 or more")
     if known and (variant or word is not None):

@@ -18,7 +18,24 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats import jsons, npy, npz, obj, text, vect, xyz
+from sono.formats import (
+    coords,
+    fseries,
+    ideal,
+    jsons,
+    knotplot,
+    lammps,
+    lammpstrj,
+    mmcif,
+    npy,
+    npz,
+    obj,
+    pdb,
+    pkf,
+    text,
+    vect,
+    xyz,
+)
 from sono.formats.closing import Close
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
@@ -83,12 +100,20 @@ READERS: dict[str, Reader] = {
     "xyz": xyz,
     "obj": obj,
     "json": jsons,
+    "lammpstrj": lammpstrj,
+    "lammps": lammps,
+    "pdb": pdb,
+    "mmcif": mmcif,
+    "ideal": ideal,
+    "fseries": fseries,
+    "pkf": pkf,
+    "coords": coords,
     "text": text,  # the last one, as it takes any text for its own
 }
 
-BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz}
+BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz, "knotplot": knotplot}
 
-SINGLE = {"text", "vect", "obj", "json", "npy", "npz"}
+SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps", "fseries", "pkf", "coords", "knotplot"}
 """The formats whose files hold one curve; into others a batch looks before it begins."""
 
 WRITERS: dict[str, Writer] = {
@@ -98,6 +123,8 @@ WRITERS: dict[str, Writer] = {
     "json": jsons,
     "npy": npy,
     "npz": npz,
+    "lammps": lammps,
+    "pdb": pdb,
     "text": text,
 }
 
@@ -117,6 +144,15 @@ SUFFIXES = {
     ".json": "json",
     ".npy": "npy",
     ".npz": "npz",
+    ".lammpstrj": "lammpstrj",
+    ".dump": "lammpstrj",
+    ".data": "lammps",
+    ".pdb": "pdb",
+    ".ent": "pdb",
+    ".cif": "mmcif",
+    ".mmcif": "mmcif",
+    ".fseries": "fseries",
+    ".pkf": "pkf",
 }
 """The format of a file by its suffix."""
 

@@ -1,6 +1,6 @@
 """What tells whether two curves have the same knot type.
 
-`fingerprint` is what a search checks each trial with; `homfly` is sharper and needs the extra sono[identify].
+`fingerprint` is what a search checks each trial with; `homfly` is sharper.
 The single invariants of `polynomials` and `signatures` take a projection: `alexander(diagram(curve), -1)`.
 """
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from sono.curve import Components
 from sono.invariants.crossings import diagram, linking_matrix, planar_diagram
+from sono.invariants.diagrams import as_crossings, gauss_code, homfly_polynomial, shortened, written
 from sono.invariants.polynomials import alexander_modulo
 from sono.invariants.signatures import signature
 
@@ -37,10 +38,15 @@ def fingerprint(curve: Components) -> Fingerprint:
 
 
 def homfly(curve: Components) -> str:
-    """Return the HOMFLY polynomial in Regina's variables alpha and z. Raises ImportError without regina."""
+    """Return the HOMFLY polynomial in Regina's variables alpha and z, written x and y.
+
+    Of some 20 crossings and more it may need regina. Raises ImportError where that is not installed.
+    """
+    gauss = shortened(gauss_code(diagram(curve)))
+    if (polynomial := homfly_polynomial(gauss)) is not None:
+        return written(polynomial)
     import regina
 
-    found = diagram(curve)
-    link = regina.Link.fromPD(planar_diagram(found))
+    link = regina.Link.fromPD(planar_diagram(as_crossings(gauss)))
     link.insertLink(regina.Link(len(curve) - link.countComponents()))  # circles without crossings
     return str(link.homflyAZ())

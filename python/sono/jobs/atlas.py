@@ -180,8 +180,8 @@ def _centred(curve: Components) -> Components:
 def confirmed_type(knot: str, curve: Components, file: str) -> str:
     """Return in which invariant a file's curve agrees with the knot of this name: "homfly" or "alexander".
 
-    Without the extra sono[identify] it is the weaker one. A few pairs of knots, such as 8_16 and 10_156,
-    agree in both. Raises `ValueError` if the curve is another knot.
+    Where its polynomial needs the extra sono[identify] it is the weaker one. A few pairs of knots, such as
+    8_16 and 10_156, agree in both. Raises `ValueError` if the curve is another knot.
     """
     start = starts.start(knot)
     wrong = fingerprint(curve) != fingerprint(start)

@@ -2,6 +2,7 @@
 
 import os
 import re
+import zlib
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Self
@@ -12,17 +13,23 @@ from sono import formats, starts
 from sono.formats import Close, FormatError, Raw, VertexFile
 
 _OF_FILES = "./\\"
-"""What no name of a knot has."""
+"""What looks like a file, but for names of knots such as 5.2.1 and 5/2."""
 
 _UNSAFE = re.compile(r"[^\w+-]")
 """What of a key is not taken into the name of a file."""
+
+_UNLIKE_FILES = str.maketrans("/:|", "-_;")
+"""What of a knot's name is changed in the name of a file."""
+
+LONGEST_NAME = 80
+"""Letters of a knot's name in tables and names of files; a longer one, which is a code, is cut and marked."""
 
 
 def is_name(source: str) -> bool:
     """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
     file = formats.split(source)[0]
     is_file = os.path.exists(file) and not os.path.isdir(file)
-    return file != "-" and not is_file and not set(_OF_FILES) & set(source)
+    return file != "-" and not is_file and (not set(_OF_FILES) & set(source) or starts.knows(source))
 
 
 def shadowed(source: str) -> bool:
@@ -48,19 +55,21 @@ class Source:
 
     @property
     def name(self) -> str:
-        """What tables call the curve: a knot's name, or a file's without folder and suffix, and its key."""
+        """What the curve is called in tables: its file's name without folder and suffix, and its key."""
+        if self.knot:
+            return _shortened(self.knot)
         stem, key = self._parts()
         return stem if key is None else f"{stem}:{key}"
 
     @property
     def stem(self) -> str:
         """What the names of its files begin with: a colon, and much else that a key may have, cannot be."""
+        if self.knot:
+            return self.name.translate(_UNLIKE_FILES)
         stem, key = self._parts()
         return stem if key is None else f"{stem}.{_UNSAFE.sub('_', key)}"
 
     def _parts(self) -> tuple[str, str | None]:
-        if self.knot:
-            return self.knot, None
         path, key = formats.split(self.given)
         return ("stdin" if path == "-" else PurePath(formats.unpacked(path)).stem), key
 
@@ -105,6 +114,12 @@ def curves(given: str, close: Close | None = None) -> list[Source]:
     return [
         Source(f"{given}:{raw.key}" if several else given, close, _checked(name, raw, close)) for raw in found
     ]
+
+
+def _shortened(knot: str) -> str:
+    """Return the name of a knot as tables have it."""
+    name = " ".join(knot.split())
+    return name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}~{zlib.crc32(name.encode()):08x}"
 
 
 def _checked(name: str, raw: Raw, close: Close | None) -> VertexFile | FormatError:

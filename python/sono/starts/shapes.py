@@ -9,7 +9,7 @@ and its coordinates are whole thousandths of the radius.
 """
 
 import io
-import re
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -21,6 +21,8 @@ import numpy as np
 
 from sono.curve import Components
 from sono.starts.drawing import mirror
+from sono.starts.spelling import spelled
+from sono.starts.tabled import knot_rows
 
 EDGE = 0.45
 """Edge length of the shapes, in radii."""
@@ -42,13 +44,13 @@ class Shape:
 def known(name: str) -> Components | None:
     """Return the shortest shape known of a knot that the atlas has, or None."""
     plain = name.strip()
+    if plain[:1].casefold() == "m":
+        found = known(plain[1:])
+        return found and mirror(found)
+    row = knot_rows().get(spelled(plain), {"knot": spelled(plain)})
     there = {knot.casefold(): knot for knot in lengths()}
-    if knot := there.get(plain.casefold()):
-        return shape(knot)
-    mirrored = re.sub("^m", "", plain, flags=re.IGNORECASE)
-    if mirrored != plain and (knot := there.get(mirrored.casefold())):
-        return mirror(shape(knot))
-    return None
+    knot = there.get(row["knot"].casefold())
+    return shape(knot) if knot else None
 
 
 @cache
@@ -82,5 +84,10 @@ def packed(shapes: Mapping[str, Shape]) -> bytes:
         arrays[f"{knot}/steps"] = np.vstack(steps).astype(np.int16)
         arrays[f"{knot}/begin"] = np.array([[len(v), *v[0]] for v in whole], np.int32)
     data = io.BytesIO()
-    np.savez_compressed(data, **arrays)
+    with zipfile.ZipFile(data, "w") as archive:
+        for name, array in arrays.items():
+            member = io.BytesIO()
+            np.save(member, array)
+            # With no time of writing, so that the same shapes are the same bytes.
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy"), member.getvalue(), zipfile.ZIP_DEFLATED, 9)
     return data.getvalue()

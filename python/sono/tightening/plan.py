@@ -7,16 +7,15 @@ polished ones; with "polish" there is no shape to be found, nor where one is kno
 """
 
 import json
-import math
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self, TypeVar, cast
 
 from sono._core import Polish, Tightener
 from sono.curve import Components, Measures, measure, packed, unpacked
 from sono.tightening.engines import Engine, status_of
-from sono.tightening.settings import TRIALS, Method, default_settings, of_polish, of_sono
-from sono.tightening.targets import COARSE, Target, aimed, coarsest
-from sono.tightening.trial import HOT, Recipe, Trial
+from sono.tightening.settings import TRIALS, Method, of_polish, of_sono
+from sono.tightening.targets import COARSE, Target, aimed, coarsest, doubled
+from sono.tightening.trial import Recipe, Trial
 
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 
@@ -46,6 +45,10 @@ curve need differs by a few percent as a rule, and by a sixth at most as far as 
 KNOWN = 0.5
 """A rope whose edges are at most so long, in radii, is polished from a shape that is known; for one of longer
 edges other shapes may be better."""
+
+GROOVED = 0.1
+"""Beads with edges longer than this, in radii, lie in grooves between those that they touch, which may hold
+the rope up by a ten-thousandth of its length; shorter ones by a hundred-thousandth at most."""
 
 CLIMBS = 3
 """Climbs that are made once more for a target that is an edge length."""
@@ -228,6 +231,10 @@ class Plan:
         self.curve, self.from_known = self.known, True
         self.shape, self.shapes, self.failed = None, [], []
         self._climb()
+        n, length = self.rungs[-1][1], measure(self.known).l_p
+        if length > GROOVED * n:  # the grooves of the shape's beads are left by way of more of them
+            self.rungs.insert(-1, ("climb", n))
+            self.rungs.insert(-1, ("climb", 2 * n))
 
     def _next_trial(self) -> None:
         """Plan another trial, or, where there were enough, the climb from the best shape."""
@@ -239,14 +246,7 @@ class Plan:
 
     def _try_again(self) -> None:
         """Plan another trial."""
-        # Edges of other lengths find other shapes; multiples of the golden ratio spread them evenly.
-        least, most = (0.92, 1.1) if _is_hot(self.tried) else (0.6, 0.9)
-        edge = least + (most - least) * ((0.5 + self.tried // 2 * (math.sqrt(5) - 1) / 2) % 1)
-        settings = of_sono(self.settings) | {"seed": self.seed()}
-        if self.method == "both":
-            settings |= _anneal_of(self.tried, default_settings() | self.settings)
-        polish = of_polish(self.settings)
-        recipe = Recipe(settings, settings, self.seed(), edge, self.targets[0], polish=polish)
+        recipe = Recipe.numbered(self.tried, self.settings, self.targets[0], short=self.method == "both")
         self.curve, self.rungs = self.start, []
         self.trial = Trial(recipe, self.start, self.loosened)
 
@@ -270,7 +270,7 @@ class Plan:
         self.curve, length = self.shape, measure(self.shape).l_p
         n = aimed(self.targets[0], length)
         few = coarsest(n, length)
-        finer = _doubled(few, n)
+        finer = doubled(few, n)
         self.rungs = [("anneal", few), *(("reanneal", level) for level in finer[:1])]
         self.rungs += [("settle", level) for level in finer or [few]]
 
@@ -278,7 +278,7 @@ class Plan:
         """Plan the rungs from a tight rope to the first target."""
         between, last = cast("tuple[Stage, Stage]", _CLIMB[self.method])
         aim = aimed(self.targets[0], measure(self.curve).l_p)
-        *levels, n = _doubled(sum(map(len, self.curve)), aim) or [aim]
+        *levels, n = doubled(sum(map(len, self.curve)), aim) or [aim]
         self.trial, self.rungs = None, [*((between, level) for level in levels), (last, n)]
 
 
@@ -290,23 +290,3 @@ _CLIMB = {"both": ("climb", "polish"), "polish": ("climb", "polish"), "sono": ("
 def _rank_of_shape(measures: Measures) -> tuple[bool, bool, float]:
     """Order shapes of equal edges before others, those with an L_c before others, then by length."""
     return measures.dispersion > UNEQUAL, measures.l_a is None, measures.l_a_or_l_p
-
-
-def _is_hot(trial: int) -> bool:
-    return trial % 2 == 1
-
-
-def _anneal_of(trial: int, settings: dict[str, Any]) -> dict[str, Any]:
-    """Return the anneal of a trial: a short one, as it has to find a shape only, and every other one hot."""
-    sweeps = max(settings["anneal_sweeps"] // 10, 1)
-    tolerance = HOT if _is_hot(trial) else settings["anneal_tolerance"]
-    return {"anneal_sweeps": sweeps, "anneal_tolerance": tolerance}
-
-
-def _doubled(have: int, n: int) -> list[int]:
-    """Return the levels above `have` that lead to n by doubling."""
-    levels: list[int] = []
-    while n > have:
-        levels.insert(0, n)
-        n //= 2
-    return levels

@@ -17,7 +17,7 @@ from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.patience import patiently, within
 from sono.tightening.coarser import coarser, unit
 from sono.tightening.engines import Engine, Seen, Status, advanced, as_seen, rank, restored, saved, status_of
-from sono.tightening.plan import Plan
+from sono.tightening.plan import GROOVED, Plan
 from sono.tightening.results import KnotTypeError, Progress, Tight
 from sono.tightening.settings import TRIALS, Method, check_settings
 from sono.tightening.targets import Target, check, coarse_first
@@ -26,10 +26,8 @@ Done = TypeVar("Done")
 
 OFFSETS = 3
 OFFSETS_TO = 1000
-GROOVED = 0.1
-"""Offsets along the rope from which the last n is refined, up to this n, where edges are longer than this, in
-radii: beads settle in other grooves each time, which matters less the finer they are (a hundred-thousandth of
-the length at most at such edges). Else the others are tried where one did not get tight."""
+"""Offsets along the rope from which the last n is refined, up to this n, where edges are `GROOVED`: beads
+settle in other grooves each time. Else the others are tried where one did not get tight."""
 
 COMPARED = 60_000
 MOMENT = 0.3

@@ -1,0 +1,91 @@
+"""`sono identify FILE...`: what knots or links curves are."""
+
+import shlex
+import sys
+from itertools import chain
+from typing import TYPE_CHECKING
+
+import click
+
+from sono import tables
+from sono.cli import options
+
+if TYPE_CHECKING:
+    from sono.formats import Close
+    from sono.jobs.sources import Source
+    from sono.naming import Identity
+
+COLUMNS = ("file", "knot", "known", "crossings")
+
+
+@click.command("identify")
+@options.files
+@click.option("--pd", is_flag=True, help="Write PD codes, a line for each FILE, instead of a table.")
+@options.close
+@options.table(COLUMNS)
+def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: options.Shown) -> None:
+    """Name the knot or link of curves: a row for each FILE, - for standard input, or each curve in it.
+
+    Names are those of KnotInfo for prime knots to 13 crossings and of LinkInfo for prime links to 9; m is the
+    mirror image, # a connected sum, + stands between parts that are not linked. A name is proven where moves
+    make the table's diagram of the curve's; where only invariants tell, all knots that share them are named.
+    What is not in the table has no name, and an undecided one has too many crossings.
+
+    Further columns are components, determinant, signature, linking (numbers), alexander and homfly, which is
+    in Regina's alpha (x) and z (y). The crossings are those of the curve's simplified diagram. Its PD code
+    gives for each crossing the four edges, counter-clockwise from the incoming lower one.
+    """
+    # Imported here, since numpy would make --help wait.
+    from sono.formats import FormatError
+    from sono.jobs.sources import curves
+
+    failed = False
+    with shown.table(taken=pd) as table:
+        for source in chain.from_iterable(curves(given, close) for given in sources):
+            try:
+                doubts, found = _identified(source)
+            except FormatError as error:
+                failed = True
+                options.complain(str(error))
+                continue
+            for doubt in doubts:
+                shown.tell(doubt)
+            if pd:
+                _write_pd(str(source), found, shown)
+            table.row(row(str(source), found))
+    sys.exit(1 if failed else 0)
+
+
+def _identified(source: "Source") -> "tuple[list[str], Identity]":
+    """Return what is doubtful about a curve, and what it is. Raises `FormatError`."""
+    from sono import naming, starts
+    from sono._core import CurveError
+    from sono.formats import FormatError
+    from sono.invariants import TooEntangledError
+    from sono.jobs.curvefiles import located
+    from sono.patience import patiently
+
+    if source.knot and starts.knows(source.knot):
+        start = f"`sono start {shlex.quote(source.knot)} | sono identify -`"
+        raise FormatError(f"{source}: no such file; identify takes files; {start} identifies a loose start")
+    file = source.read()
+    try:
+        return file.doubts(), patiently(lambda: naming.identify(file.components))
+    except TooEntangledError as error:
+        raise FormatError(f"{file.name}: {error}") from error
+    except CurveError as error:
+        raise located(error, file) from error
+
+
+def row(name: str, found: "Identity") -> tables.Row:
+    """Return the row of a curve."""
+    linking = " ".join(map(str, found.linking)) or None
+    return {**found.to_dict(), "file": name, "knot": found.name, "linking": linking}
+
+
+def _write_pd(name: str, found: "Identity", shown: options.Shown) -> None:
+    """Write a PD code as KnotInfo does, on a line."""
+    sys.stdout.write(str([list(code) for code in found.pd]).replace(" ", "") + "\n")
+    crossed = {edge for code in found.pd for edge in code}
+    if not crossed:
+        shown.tell(f"{name}: there are no crossings, and so nothing in the PD code")

@@ -1,0 +1,210 @@
+"""What knot or link a curve is.
+
+>>> from sono.starts import start
+>>> identify(start("3_1#m4_1")).name, identify(start("12n_725")).proven
+('3_1#4_1', True)
+"""
+
+import cmath
+import math
+import re
+from dataclasses import dataclass
+from itertools import islice, product
+from typing import Literal
+
+import numpy as np
+
+from sono import _core
+from sono.curve import Components
+from sono.invariants.crossings import diagram, linking_matrix, planar_diagram
+from sono.invariants.diagrams import (
+    Gauss,
+    Polynomial,
+    alexander_polynomial,
+    as_crossings,
+    gauss_code,
+    homfly_polynomial,
+    shortened,
+    times,
+    written,
+)
+from sono.invariants.identify import ORDERS
+from sono.invariants.polynomials import alexander
+from sono.invariants.signatures import signature
+from sono.naming.known import Type, sharing
+from sono.records import Record
+
+MOST_SIMPLER, MOST_PROOF = 1_000, 10_000
+"""Diagrams that are looked at, for one with fewer crossings and for a proof; 10,000 take some 0.3 s."""
+
+MOST_CROSSINGS = 20
+"""Crossings of a part up to which one that has no name gets a second look."""
+
+MOST_NAMES = 100
+"""Names of a sum, each of whose parts may have several."""
+
+
+@dataclass(frozen=True, repr=False)
+class Identity(Record):
+    """What knot or link a curve is, and what tells it.
+
+    `names` are those of all types in the table, prime knots to 13 crossings, prime links to 9 and their sums,
+    that it may be; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not linked.
+    A sum of links does not say which of their components are joined. `known` tells how: "proven" where moves
+    make the table's diagrams of the curve's, and there is one name; "invariants" where these agree;
+    "not in the table", for which a sum that its diagram hides is taken too; or "undecided" where its HOMFLY
+    polynomial takes too long.
+
+    `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
+    the incoming lower one. `crossings` counts its crossings. `linking` has the linking numbers of all pairs
+    of components; `homfly`, in Regina's alpha and z, and `alexander`, of a single variable, are None where
+    they would take too long.
+
+    >>> import sono
+    >>> found = sono.identify(sono.start("3_1", variant=7))
+    >>> found.name, found.proven, found.crossings, found.homfly
+    ('3_1', True, 3, 'x^-2 y^2 + 2 x^-2 - x^-4')
+    """
+
+    names: tuple[str, ...]
+    known: Literal["proven", "invariants", "not in the table", "undecided"]
+    components: int
+    crossings: int
+    determinant: int
+    signature: int
+    linking: tuple[int, ...]
+    homfly: str | None
+    alexander: str | None
+    pd: tuple[tuple[int, int, int, int], ...]
+
+    @property
+    def name(self) -> str | None:
+        """The name, or all of them, with "or" between; None where the table has no such type."""
+        return " or ".join(self.names) or None
+
+    @property
+    def proven(self) -> bool:
+        """Whether the name is proven."""
+        return self.known == "proven"
+
+
+def identify(curve: Components) -> Identity:
+    """Return what knot or link a curve is. Raises `TooEntangledError`, and `CurveError` if it crosses itself.
+
+    The prime parts of its diagram are looked up by their HOMFLY polynomials; then moves are sought that make
+    the table's diagrams of them.
+    """
+    gauss = shortened(gauss_code(diagram(curve)))
+    pieces = _pieces(gauss)
+    if len(curve) == 1 and len(pieces[0]) == 1:
+        gauss = pieces[0][0].diagram
+    found = as_crossings(gauss)
+    names = _names([[prime.names for prime in piece] for piece in pieces])
+    polynomial = _polynomial(pieces)
+    return Identity(
+        names=names,
+        known=_how([prime for piece in pieces for prime in piece]),
+        components=len(curve),
+        crossings=len(found.sign),
+        determinant=round(alexander(found, -1)),
+        signature=signature(found, -1),
+        linking=tuple(linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()),
+        homfly=None if polynomial is None else written(polynomial),
+        alexander=None if polynomial is None else alexander_polynomial(polynomial),
+        pd=tuple(planar_diagram(found)),
+    )
+
+
+@dataclass(frozen=True)
+class _Prime:
+    """A prime part: its smallest diagram, names, whether one is proven, and HOMFLY polynomial, if known.
+
+    It `is_new` where the table cannot have it.
+    """
+
+    diagram: Gauss
+    is_new: bool
+    polynomial: Polynomial | None
+    names: list[str]
+    proven: bool
+
+
+def _how(primes: list[_Prime]) -> Literal["proven", "invariants", "not in the table", "undecided"]:
+    """Tell how these parts are known."""
+    if all(prime.proven for prime in primes):
+        return "proven"
+    if all(prime.names for prime in primes):
+        return "invariants"
+    return "not in the table" if any(prime.is_new for prime in primes) else "undecided"
+
+
+def _pieces(gauss: Gauss) -> list[list[_Prime]]:
+    """Return the prime parts of each piece that is apart."""
+    pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_SIMPLER)]
+    unknown = [len(prime.diagram[1]) for piece in pieces for prime in piece if not prime.names]
+    if unknown and max(unknown) <= MOST_CROSSINGS:
+        pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_PROOF)]
+    return pieces
+
+
+def _known(prime: Gauss) -> _Prime:
+    polynomial = homfly_polynomial(prime)
+    types = sharing(polynomial) if polynomial else []
+    at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
+    if at is not None:
+        smallest = min(prime, types[at].diagram, key=lambda gauss: len(gauss[1]))
+        return _Prime(smallest, False, polynomial, [types[at].name], True)
+    names = [type.name for type in types if _may_be(prime, type)]
+    is_new = not names and (polynomial is not None or _is_alternating(prime))
+    return _Prime(prime, is_new, polynomial, names, False)
+
+
+def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
+    """Return the names of what is made of parts that may have these names."""
+    names: dict[str, None] = {}
+    for way in islice(product(*(choices for piece in pieces for choices in piece)), MOST_NAMES):
+        parts = iter(way)
+        sums = ["#".join(sorted((next(parts) for _ in piece), key=_order)) or "0_1" for piece in pieces]
+        names["+".join(sorted(sums, key=_order))] = None
+    return tuple(names)
+
+
+def _polynomial(pieces: list[list[_Prime]]) -> Polynomial | None:
+    """Return the HOMFLY polynomial of the whole, if it is known."""
+    factors = [prime.polynomial for piece in pieces for prime in piece]
+    factors += [{(1, -1): 1, (-1, -1): -1}] * (len(pieces) - 1)
+    found: Polynomial = {(0, 0): 1}
+    for factor in factors:
+        if factor is None:
+            return None
+        found = times(found, factor)
+    return found
+
+
+def _order(name: str) -> tuple[list[int], str]:
+    """Return by what names are sorted: crossings and numbers first."""
+    return [int(number) for number in re.findall(r"\d+", name)], name
+
+
+def _may_be(prime: Gauss, type: Type) -> bool:
+    """Tell whether crossing numbers and signatures agree.
+
+    A reduced alternating diagram has as few crossings as there can be (L. Kauffman, K. Murasugi,
+    M. Thistlethwaite, 1987).
+    """
+    crossings = len(prime[1])
+    alternating = _is_alternating(prime)
+    if type.crossings > crossings or alternating != (
+        _is_alternating(type.diagram) and type.crossings == crossings
+    ):
+        return False
+    one, other = as_crossings(prime), as_crossings(type.diagram)
+    roots = [cmath.exp(2j * math.pi / k) for k in ORDERS]
+    return all(signature(one, t) == signature(other, t) for t in roots)
+
+
+def _is_alternating(gauss: Gauss) -> bool:
+    def alternates(along: list[int]) -> bool:
+        return all((one > 0) != (other > 0) for one, other in zip(along, along[1:] + along[:1], strict=True))
+
+    return all(map(alternates, gauss[0]))

@@ -1,0 +1,81 @@
+"""`sono identify`: rows for what has a name and for what has none, a message for what cannot be told."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Sono
+
+import sono as package
+from sono import formats, starts, tables
+
+
+@pytest.fixture
+def curves(folder: Path) -> Path:
+    for file, name in {"mirror": "m3_1", "sum": "3_1#4_1", "new": "T(2,15)", "unknot": "0_1"}.items():
+        formats.write(folder / f"{file}.txt", starts.start(name))
+    return folder
+
+
+def test_a_row_for_each_file(curves: Path, sono: Sono) -> None:
+    result = sono("identify", "3_1.txt", "mirror.txt", "sum.txt", "new.txt", "unknot.txt", "Hopf.txt")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert [line.split("\t") for line in result.stdout.splitlines()] == [
+        ["file", "knot", "known", "crossings"],
+        ["3_1.txt", "3_1", "proven", "3"],
+        ["mirror.txt", "m3_1", "proven", "3"],
+        ["sum.txt", "3_1#4_1", "proven", "7"],
+        ["new.txt", "-", "not in the table", "15"],
+        ["unknot.txt", "0_1", "proven", "0"],
+        ["Hopf.txt", "L2a1{1}", "proven", "2"],
+    ]
+
+
+def test_invariants_are_columns(sono: Sono) -> None:
+    result = sono("identify", "Hopf.txt", "--format", "jsonl", "--columns", ",".join(tables.COLUMNS))
+    row = json.loads(result.stdout)
+    found = package.identify("Hopf")
+    assert (row["determinant"], row["signature"], row["linking"], row["components"]) == (2, -1, "1", 2)
+    assert (row["homfly"], row["alexander"]) == (found.homfly, "t - 1")
+    assert row["l_p"] is None
+
+
+def test_pd_codes(curves: Path, sono: Sono) -> None:
+    result = sono("identify", "--pd", "mirror.txt", "unknot.txt", "--quiet")
+    assert (result.exit_code, result.stderr) == (0, "")
+    trefoil, unknot = map(json.loads, result.stdout.splitlines())
+    assert (len(trefoil), unknot) == (3, [])
+    assert sorted(edge for code in trefoil for edge in code) == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6]
+    loud = sono("identify", "--pd", "unknot.txt")
+    assert loud.stdout == "[]\n"
+    assert "sono: unknot.txt: there are no crossings, and so nothing in the PD code" in loud.stderr
+
+
+def test_standard_input(folder: Path, sono: Sono) -> None:
+    result = sono("identify", "-", input=(folder / "3_1.txt").read_text())
+    assert result.stdout.splitlines()[1].split("\t")[1:] == ["3_1", "proven", "3"]
+
+
+def test_wrong_files_do_not_stop_the_others(folder: Path, sono: Sono) -> None:
+    (folder / "crossing.txt").write_text("# 8\n0 0 0\n2 2 0\n2 0 0\n0 2 0\n")
+    (folder / "text.txt").write_text("0 0 0\n1 0 nought\n")
+    formats.write(folder / "tangle.txt", [np.random.default_rng(1).normal(size=(200, 3))])
+    result = sono("identify", "crossing.txt", "text.txt", "missing.txt", "8_18", "tangle.txt", "3_1.txt")
+    assert result.exit_code == 1
+    assert [line.split("\t")[0] for line in result.stdout.splitlines()] == ["file", "3_1.txt"]
+    expected = [
+        "crossing.txt:2: the curve crosses itself",
+        "text.txt:2: 'nought' is not a number",
+        "missing.txt: cannot be read: ",
+        "8_18: no such file; identify takes files; `sono start 8_18 | sono identify -`",
+        "tangle.txt: the curve has over 1000 crossings: its type cannot be told",
+    ]
+    for message, start in zip(result.stderr.splitlines(), expected, strict=True):
+        assert message.startswith(f"sono: {start}")
+
+
+@pytest.mark.parametrize("arguments", [[], ["3_1.txt", "--columns", "weight"]])
+def test_wrong_arguments(sono: Sono, arguments: list[str]) -> None:
+    result = sono("identify", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
