@@ -7,8 +7,9 @@ P[1,2] joins two edges, Loop[1] is a circle without crossings.
 A DT code ("dt:4 6 2") has the even number of the crossing that is passed first, third, fifth, ...; a minus
 means that odd and even change places as upper and lower. A Gauss code ("gauss:1 -2 3 -1 2 -3") has
 the crossings in the order in which they are passed, with a minus where that is below. Neither tells a diagram
-from its mirror image. That is taken whose first crossing is right-handed; in a connected sum the first one of
-each summand. Signs tell: "gauss:O1+U2+O3+U1+O2+U3+", over and under, + for a right-handed crossing.
+from its mirror image. That is taken whose first crossing is right-handed, as KnotInfo's DT codes to 12
+crossings mean it; in a connected sum the first one of each summand. With the signs of crossings, + for
+right-handed ones, a Gauss code tells: "gauss:O1+U2+O3+U1+O2+U3+", over and under.
 
 >>> len(diagram("pd", "[(1,5,2,4), (3,1,4,6), (5,3,6,2)]").far), len(diagram("dt", "[[6,8],[2,4]]").begins)
 (12, 2)

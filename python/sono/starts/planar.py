@@ -8,13 +8,14 @@ another conformation: strands that ran inside now run round all others.
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sono.curve import Components, Floats, measure
 from sono.starts.diagrams import Diagram, Slot, faces, pieces, reduced
-from sono.starts.drawing import divided
+from sono.starts.drawing import check_size, divided
 from sono.starts.torus import chain
 
 ROUNDS = 12
@@ -33,6 +34,9 @@ TRIES = 12
 PULL = 0.3
 """The power of its length by which a line's weight grows in a round."""
 
+
+FLAT = 1e-12
+"""Twice the area of a triangle, in a circle of radius 1, up to which rounding may have turned it over."""
 
 APART = 4.0
 """Distance of the pieces of a split link, in radii."""
@@ -72,21 +76,43 @@ def _part(diagram: Diagram, piece: Sequence[int], group: Sequence[int]) -> Diagr
 def _lifted(diagram: Diagram, seed: int) -> Components:
     """Return the curve of a diagram that is neither split nor has a nugatory crossing."""
     around = faces(diagram.far)
-    crossing, edge = _points(diagram)
     drawings = []
     for outer in ((np.arange(len(around)) + seed % len(around)) % len(around))[:TRIES]:
-        lines, boundary = _triangulated(crossing, edge, around, int(outer))
-        points = _drawn(lines, boundary, np.random.default_rng(seed))
-        lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
-        points /= lengths.min()
-        curve = [
-            _raised([(crossing[slot[0]], edge[slot], slot[1] % 2) for slot in entered], points)
-            for entered in diagram.circuits()
-        ]
-        drawings.append((measure(curve).l_p, curve))
-        if lengths.max() < UNEVEN * lengths.min() and drawings[-1][0] < LONGEST:
-            return curve
+        with suppress(ValueError):  # one without thickness, or far too large
+            ratio, curve = _drawing(diagram, around, int(outer), seed)
+            drawings.append((measure(curve).l_p, curve))
+            if ratio < UNEVEN and drawings[-1][0] < LONGEST:
+                return curve
+    if not drawings:
+        raise ValueError("the diagram cannot be drawn with room for a rope; give one of fewer crossings")
     return min(drawings, key=lambda drawing: drawing[0])[1]
+
+
+def _drawing(
+    diagram: Diagram, around: Sequence[Sequence[Slot]], outer: int, seed: int
+) -> tuple[float, Components]:
+    """Return the curve with this outer face, and the ratio of its longest line to the shortest.
+
+    Raises ValueError where rounding might have let lines cross, or there would be over `MOST_VERTICES`.
+    """
+    crossing, edge = _points(diagram)
+    lines, triangles, boundary = _triangulated(crossing, edge, around, outer)
+    points = _drawn(lines, boundary, np.random.default_rng(seed))
+    one, two, three = points[triangles.T]
+    if _cross(two - one, three - one).min() < FLAT:
+        raise ValueError("a triangle of the drawing is flat")
+    lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
+    points /= lengths.min()
+    check_size(int(lengths.sum() / lengths.min()), "a diagram drawn so")
+    curve = [
+        _raised([(crossing[slot[0]], edge[slot], slot[1] % 2) for slot in entered], points)
+        for entered in diagram.circuits()
+    ]
+    return lengths.max() / lengths.min(), curve
+
+
+def _cross(one: Floats, other: Floats) -> Floats:
+    return one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
 
 
 def _points(diagram: Diagram) -> tuple[dict[int, int], dict[Slot, int]]:
@@ -108,20 +134,23 @@ def _raised(passages: Sequence[tuple[int, int, int]], points: Floats) -> Floats:
 
 def _triangulated(
     crossing: dict[int, int], edge: dict[Slot, int], around: Sequence[Sequence[Slot]], outer: int
-) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
-    """Return the lines (m, 2) of the triangulation, and the points round the outer face, clockwise.
+) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.int_]]:
+    """Return the lines (m, 2), the triangles (k, 3), and the points round the outer face, counter-clockwise.
 
     Points are the crossings, then the middles of edges, then those amid faces.
     """
     lines = [(crossing[slot[0]], edge[slot]) for slot in sorted(edge)]
+    triangles: list[tuple[int, int, int]] = []
     boundary: list[int] = []
     for number, face in enumerate(around):
         circuit = [point for slot in face for point in (crossing[slot[0]], edge[slot])]
         if number == outer:
             boundary = circuit
         else:
-            lines += [(3 * len(crossing) + number - (number > outer), point) for point in circuit]
-    return np.array(lines), np.array(boundary[::-1])
+            amid = 3 * len(crossing) + number - (number > outer)
+            lines += [(amid, point) for point in circuit]
+            triangles += [(amid, circuit[k - 1], point) for k, point in enumerate(circuit)]
+    return np.array(lines), np.array(triangles), np.array(boundary[::-1])
 
 
 def _drawn(lines: NDArray[np.int_], boundary: NDArray[np.int_], random: np.random.Generator) -> Floats:
