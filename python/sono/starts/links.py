@@ -15,6 +15,7 @@ from itertools import permutations, product
 
 from sono.curve import Components
 from sono.invariants import fingerprint
+from sono.naming import identify
 from sono.starts.tables import table
 
 COMMON = {"Whitehead": "L5a1", "Borromean": "L6a4", "Solomon": "L4a1"}
@@ -56,11 +57,12 @@ def link_row(name: str) -> dict[str, str] | None:
 def oriented_like(curve: Components, model: Components) -> Components:
     """Return a link with its components in such an order, and so oriented, that its type is the model's.
 
-    The type is compared by `fingerprint`. Raises `ValueError` if it is another link.
+    The type is compared by `fingerprint`, and by name: two orientations of L9n27 share all invariants. Raises
+    `ValueError` if it is another link.
     """
-    wanted = fingerprint(model)
+    wanted, names = fingerprint(model), identify(model).names
     for candidate in _orientations(curve):
-        if fingerprint(candidate) == wanted:
+        if fingerprint(candidate) == wanted and identify(candidate).names == names:
             return candidate
     raise ValueError("this is another link than the model")
 
