@@ -73,6 +73,7 @@ def test_parts_that_are_apart() -> None:
     found = identify(apart)
     assert (found.name, found.components, found.determinant) == ("0_1+0_1+L2a1{1}+3_1", 5, 0)
     assert found.linking == (0, 0, 0, 0, 0, 0, 0, 1, 0, 0)
+    assert found.circles == 2
     # A link under which another one lies is not linked with it either.
     over = [component * (1, 1, 0.2) + (0.3, 0.1, 40) for component in start("4_1")]
     assert identify([*trefoil, *over]).name == "3_1+4_1"
