@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from sono import starts
-from sono.formats import FormatError, text, vect
+from sono.formats import FormatError, jsons, npy, npz, obj, text, vect, xyz
 from sono.jobs import curvefiles
 from sono.jobs.result import as_row
 
@@ -42,6 +42,7 @@ WORDS = (
         b"-0.0",
     ),
     *(b"9" * 400, b"9" * 5000, b"1.0D+00", b"1.0-100", b"0x10", b"1_0", b"\xd9\xa1", b"1,2", b"1 2 3", b"1e"),
+    *(b"x y z", b"C", b"v", b"l", b"{", b"[[", b"\x93NUMPY", b"PK\x03\x04", b'components="3 4"'),
     *(b"VECT", b"4VECT", b"VECT BINARY", b"-3", b"-60", b"99999999999999999999", b"0 0 0", b"# ", b"#"),
     *(
         b",",
@@ -79,8 +80,14 @@ def samples() -> list[bytes]:
             text.write([closed], []).replace("\n", "\r\n"),
             fortran,
             "0 0 0\n1 0 0\n0 1 0\n",
+            xyz.write(link, ["a link"]),
+            xyz.write([few], []).replace('components="7"', "Properties=species:S:1:pos:R:3"),
+            obj.write(link, ["a link"]),
+            jsons.write(trefoil, ["a trefoil"]),
+            "index;x;y;z\n" + "".join(f"{i};{x};{y};{z}\n" for i, (x, y, z) in enumerate(few)),
+            "".join(f"C {i} {x} {y} {z}\n" for i, (x, y, z) in enumerate(few)),
         )
-    ]
+    ] + [npy.packed(few), npz.write(link, ["a link"])]
 
 
 def mutants(seed: int) -> Iterator[bytes]:

@@ -10,14 +10,18 @@ from sono import tighten as sono_tighten
 from sono.invariants import fingerprint
 from sono.jobs.atlas import Atlas, confirmed_type
 from sono.searching import trials
+from sono.starts import shapes
 
 KNOTS = Path(__file__).parent.parent / "knots"
 SHIPPED = Atlas(KNOTS).rows()
 
 
 @pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+def quick(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(trials, "GENTLE", 1)
+    own = tmp_path / "shapes.npz"  # so that what is found here does not get into the package
+    own.write_bytes(shapes.FILE.read_bytes())
+    monkeypatch.setattr(shapes, "FILE", own)
 
 
 def tight(path: Path, knot: str, n: int) -> str:

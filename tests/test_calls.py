@@ -126,7 +126,7 @@ def test_who_watches_stops_and_keeps_the_best(dl: float | None) -> None:
         seen.append(progress)
         return progress.trial == 2
 
-    tight = sono.tighten("3_1", dl=dl, watch=watch)
+    tight = sono.tighten("3_1", dl=dl, known=False, watch=watch)
     assert not tight.converged
     assert len(tight.shapes) == 1
     assert tight.measures.r_s == pytest.approx(1)

@@ -72,7 +72,7 @@ WRONG = {
     "crossing": ("# 8\n0 0 0\n2 2 0\n2 0 0\n0 2 0\n", ":2: the curve crosses itself"),
     "close": ("0 0 0\n2 2 0\n2 0 1e-9\n0 2 1e-9\n", ":1: the curve crosses itself"),
     "folded": ("0 0 0\n1 0 0\n2 0 0\n", ":1: the curve crosses itself"),
-    "open": ("VECT\n1 3 0\n3\n0\n0 0 0\n1 0 0\n0 1 0\n", ":3: a polyline is open"),
+    "open": ("VECT\n1 3 0\n3\n0\n0 0 0\n1 0 0\n0 1 0\n", ":7: the chain is open"),
     "huge": ("0 0 0\n1e200 0 0\n0 1e200 1e200\n", ":2: vertex 1 of component 0 is not finite"),
     "empty": ("", ":1: the file holds no vertices"),
     "binary": ("\xff\xfe\0\0", ":1: byte 0xff is not UTF-8 text"),

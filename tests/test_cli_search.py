@@ -145,7 +145,7 @@ def test_standard_input_and_output(folder: Path, sono: Sono) -> None:
         (["3_1", "--force", "--resume"], "give one of them"),
         (["3_1", "--shard", "3/2"], "give I/N with I from 1 to N"),
         (["3_1", "--list", "nowhere.txt"], "does not exist"),
-        (["3_1", "-o", "rope.npy"], "rope.npy: .npy is no format for vertices"),
+        (["3_1", "-o", "rope.stl"], "rope.stl: .stl is no format for vertices"),
         (["3_1", "3_1"], "3_1.tight.txt would be written 2 times; give each knot once"),
         (["3_1", "--dl", "3"], "--dl"),
         (["3_1", "--dl", "nan"], "nan is not a number"),

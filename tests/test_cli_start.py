@@ -66,8 +66,8 @@ def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "give either a NAME or a --braid word"),
-        (["3_1", "--braid", "1"], "give either a NAME or a --braid word"),
+        ([], "give one NAME, a --pd, --dt or --gauss code, or a --braid word"),
+        (["3_1", "--braid", "1"], "give one NAME, a --pd, --dt or --gauss code, or a --braid word"),
         (["3-1"], "did you mean '3_1'?"),
         (["T(0,3)"], "p and q must not be zero"),
         ([f"T({'9' * 5000},2)"], "unknown knot"),
@@ -78,7 +78,7 @@ def test_a_file_is_not_overwritten(folder: Path, sono: Sono) -> None:
         (["3_1", "--scramble", "-1"], "'--scramble'"),
         (["--braid", ""], "give whole numbers"),
         (["--braid", "1 1", "--variant", "-2"], "--variant -2: a braid word has no planar diagram"),
-        (["Hopf", "--variant", "-2"], "only the knots of the tables have negative variants"),
+        (["chain3", "--variant", "-2"], "chain3 has no planar diagram"),
         (["3_1", "-o", "out.png"], "out.png: .png is no format for vertices"),
         (["T(999999,3)"], "T(999999,3) would take over 500,000 vertices"),
         (["chain99999999"], "a chain of 99999999 rings would take over 500,000 vertices"),

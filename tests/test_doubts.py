@@ -5,12 +5,17 @@ import pytest
 from numpy.typing import NDArray
 
 from sono import starts
-from sono.formats import FormatError, text
+from sono.formats import FormatError, VertexFile, text
 from sono.formats.doubts import closing_edge, jumps
 
 Floats = NDArray[np.float64]
 
 TREFOIL = starts.start("3_1")[0]
+
+
+def parse_text(content: str) -> VertexFile:
+    (raw,) = text.read(content, "k")
+    return VertexFile.checked("k", raw)
 
 
 def wrapped(curve: Floats, box: Floats, offset: Floats) -> tuple[Floats, NDArray[np.int64]]:
@@ -60,7 +65,7 @@ def test_jumps_in_a_link_are_found() -> None:
 def test_the_jumps_are_named_with_their_lines() -> None:
     inside, through = wrapped(TREFOIL, np.array([5.0, 50.0, 50.0]), np.array([1.0, 20.0, 20.0]))
     with pytest.raises(FormatError) as caught:
-        text.read("# a comment\n" + text.write([inside], []), "k")
+        parse_text("# a comment\n" + text.write([inside], []))
     lines = ((through + 1) % len(inside) + 2).tolist()
     message = str(caught.value)
     assert message.startswith(f"k:{lines[0]}: a periodic box of about ")
@@ -90,7 +95,7 @@ def test_the_library_is_beyond_doubt(name: str, variant: int) -> None:
 
 def test_an_open_chain_is_told() -> None:
     walk = np.cumsum(np.random.default_rng(3).normal([0.5, 0, 0], size=(100, 3)), axis=0)
-    chain = text.read(text.write([TREFOIL, walk + 100], []), "k")
+    chain = parse_text(text.write([TREFOIL, walk + 100], []))
     (doubt,) = chain.doubts()
     times = round(closing_edge(walk))
     assert times > 20

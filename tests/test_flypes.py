@@ -4,20 +4,19 @@ import pytest
 
 from sono.invariants import fingerprint
 from sono.starts import start, table
+from sono.starts.codes import diagram
+from sono.starts.diagrams import Diagram, codes, faces, pieces
 from sono.starts.flypes import flyped
-from sono.starts.planar import Diagram, faces, lifted
+from sono.starts.planar import lifted
 
-DIAGRAMS: dict[str, Diagram] = {
-    row["knot"]: [(a, b, c, d) for a, b, c, d in (map(int, code.split(",")) for code in row["pd"].split())]
-    for row in table("knots")
-}
+DIAGRAMS = {row["knot"]: diagram("pd", row["pd"]) for row in table("knots")}
 FLYPED = [seed for seed in range(24) if flyped(DIAGRAMS["8_1"], seed) != DIAGRAMS["8_1"]]
 
 
 def face_sizes(diagram: Diagram) -> tuple[tuple[int, ...], ...]:
     """Return the sizes of the four faces at each crossing, sorted: equal for equal diagrams."""
-    size = {slot: len(face) for face in faces(diagram) for slot in face}
-    around = (tuple(sorted(size[crossing, k] for k in range(4))) for crossing in range(len(diagram)))
+    size = {slot: len(face) for face in faces(diagram.far) for slot in face}
+    around = (tuple(sorted(size[crossing, k] for k in range(4))) for crossing, _ in sorted(diagram.far))
     return tuple(sorted(around))
 
 
@@ -29,20 +28,19 @@ def test_the_type_is_kept(knot: str) -> None:
 
 
 def test_every_diagram_stays_planar() -> None:
-    for knot, diagram in DIAGRAMS.items():
-        after = flyped(diagram, FLYPED[len(knot) % 3])
-        assert sorted(edge for slots in after for edge in slots) == sorted(
-            2 * [*range(1, 2 * len(diagram) + 1)]
-        )
-        assert len(faces(after)) == len(diagram) + 2  # Euler's formula
+    for knot, before in DIAGRAMS.items():
+        after = flyped(before, FLYPED[len(knot) % 3])
+        assert before.far.keys() == after.far.keys() == set(after.far.values())
+        assert len(faces(after.far)) == len(after.far) // 4 + 2  # Euler's formula
+        assert len(pieces(after.far)) == len(after.begins) == 1
 
 
 def test_the_writhe_of_an_alternating_diagram_is_kept() -> None:
     """P. Tait's conjecture, proved by M. Thistlethwaite; it can change where a diagram does not alternate."""
 
     def writhe(diagram: Diagram) -> int:
-        # The upper strand of a positive crossing comes from the right of the lower one.
-        return sum(1 if d == b % (2 * len(diagram)) + 1 else -1 for _, b, _, d in diagram)
+        # The upper strand of a right-handed crossing comes from the left of the lower one.
+        return sum(-1 if d == b % (len(diagram.far) // 2) + 1 else 1 for _, b, _, d in codes(diagram))
 
     for knot in ("7_6", "9_15", "10_71"):
         assert {writhe(flyped(DIAGRAMS[knot], seed)) for seed in FLYPED[:5]} == {writhe(DIAGRAMS[knot])}

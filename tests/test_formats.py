@@ -5,8 +5,8 @@ import os
 import re
 import sys
 import time
-from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from sono import formats
-from sono.formats import FormatError, VertexFile, atomic_text, text, vect
+from sono.formats import FormatError, Reader, VertexFile, atomic, text, vect
 from sono.formats.doubts import jumps
 from sono.formats.vertices import ends_meet
 
@@ -27,15 +27,20 @@ polygons = st.lists(st.tuples(numbers, numbers, numbers), min_size=3, max_size=8
 comments = st.lists(st.text(st.characters(exclude_categories=["Cs"])), max_size=3)
 
 
+def parse(format: Reader, content: str, name: str) -> VertexFile:
+    (raw,) = format.read(content, name)
+    return VertexFile.checked(name, raw)
+
+
 def parsed(content: str) -> list[list[list[float]]]:
-    return lists(text.read(content, "k.xyz"))
+    return lists(parse(text, content, "k.xyz"))
 
 
 def lists(curve: VertexFile) -> list[list[list[float]]]:
     return [component.tolist() for component in curve.components]
 
 
-@pytest.mark.parametrize("suffix", ["xyz", "vect"])
+@pytest.mark.parametrize("suffix", ["txt", "xyz", "vect", "obj", "json", "npz", "npy", "txt.gz"])
 @given(curve=st.lists(polygons, min_size=1, max_size=4), comments=comments)
 def test_round_trip_keeps_every_bit(
     suffix: str,
@@ -44,6 +49,7 @@ def test_round_trip_keeps_every_bit(
     comments: list[str],
 ) -> None:
     assume(not any(map(ends_meet, curve)))
+    assume(suffix != "npy" or len({len(component) for component in curve}) == 1)
     assume(not jumps(curve)[1])
     path = tmp_path_factory.getbasetemp() / f"curve.{suffix}"
     formats.write(path, curve, comments)
@@ -86,11 +92,11 @@ def test_a_last_vertex_repeats_the_first_up_to_rounding(error: float, scale: flo
     knot = scale * TREFOIL
     again = np.vstack([knot, knot[0] + error * scale * np.array([0.3, 0.5, -0.2])])
     for content in (text.write([again], []), vect.write([again], []), open_vect(again)):
-        read = (vect if content.startswith("VECT") else text).read(content, "k")
+        read = parse(vect if content.startswith("VECT") else text, content, "k")
         assert [c.tobytes() for c in read.components] == [knot.tobytes()]
     # In the second component of a link too.
     far = knot + 9 * scale
-    assert [len(c) for c in text.read(text.write([far, again], []), "k").components] == [40, 40]
+    assert [len(c) for c in parse(text, text.write([far, again], []), "k").components] == [40, 40]
 
 
 def open_vect(vertices: NDArray[np.float64]) -> str:
@@ -102,20 +108,20 @@ def test_single_precision_repeats_too() -> None:
     t = np.linspace(0, 2 * np.pi, 200, dtype=np.float32)
     circle = np.column_stack([5 * np.cos(7 * t) + 7, 5 * np.sin(7 * t), np.sin(t)]).astype(np.float64)
     assert circle[0].tolist() != circle[-1].tolist()
-    assert len(text.read(text.write([circle], []), "k").components[0]) == 199
+    assert len(parse(text, text.write([circle], []), "k").components[0]) == 199
 
 
 @pytest.mark.parametrize("share", [1e-3, 1e-1, 0.5])
 def test_a_short_closing_edge_is_an_edge(share: float) -> None:
     knot = np.vstack([TREFOIL, TREFOIL[0] + share * (TREFOIL[-1] - TREFOIL[0])])
-    assert len(text.read(text.write([knot], []), "k").components[0]) == 41
-    with pytest.raises(FormatError, match="a polyline is open"):
-        vect.read(open_vect(knot), "k")
+    assert len(parse(text, text.write([knot], []), "k").components[0]) == 41
+    with pytest.raises(FormatError, match="the chain is open"):
+        parse(vect, open_vect(knot), "k")
 
 
 def test_short_edges_beside_a_short_closing_edge_are_edges() -> None:
     small = np.vstack([TREFOIL, TREFOIL[0] + 1e-9 * np.array([[3, 0, 0], [2, 1, 0], [1, 0, 1]])])
-    assert len(text.read(text.write([small], []), "k").components[0]) == 43
+    assert len(parse(text, text.write([small], []), "k").components[0]) == 43
 
 
 @pytest.mark.parametrize(
@@ -124,7 +130,7 @@ def test_short_edges_beside_a_short_closing_edge_are_edges() -> None:
 )
 def test_fortran_numbers(word: str, value: float) -> None:
     assert parsed(f"{word} 0 0\n1 0 0\n0 1.0D+00 0\n")[0][0] == [value, 0, 0]
-    vectors = vect.read(f"VECT 1 3 0 -3 0\n{word} 0 0\n1 0 0\n0 1.0D+00 0\n", "k")
+    vectors = parse(vect, f"VECT 1 3 0 -3 0\n{word} 0 0\n1 0 0\n0 1.0D+00 0\n", "k")
     assert vectors.components[0][0].tolist() == [value, 0, 0]
 
 
@@ -134,7 +140,7 @@ def test_what_fortran_does_not_write(word: str) -> None:
         parsed(f"{word} 0 0\n1 0 0\n0 1 0\n")
 
 
-@pytest.mark.parametrize("suffix", ["stl", "npy", "png", "pdb", "csv", "n480"])
+@pytest.mark.parametrize("suffix", ["stl", "png", "csv", "n480"])
 def test_a_suffix_of_no_format_is_not_written(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"k.{suffix}"
     with pytest.raises(FormatError, match=rf"k\.{suffix}: \.{suffix} is no format for vertices"):
@@ -154,7 +160,7 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, end: bytes) -> None:
 
 
 def test_where_counts_comments_and_blank_lines() -> None:
-    curve = text.read(f"# title\n{ROWS}\n{ROWS}", "k.xyz")
+    curve = parse(text, f"# title\n{ROWS}\n{ROWS}", "k.xyz")
     assert [curve.where(0, 0), curve.where(0, 2), curve.where(1, 0)] == ["k.xyz:2", "k.xyz:4", "k.xyz:6"]
 
 
@@ -177,7 +183,7 @@ def test_where_counts_comments_and_blank_lines() -> None:
             "give three numbers x y z, and start other lines with #",
         ),
         ("# a\n0 0\n", "k.xyz:2: 2 columns; give three numbers x y z, and start other lines with #"),
-        ("1 0 0 0\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
+        ("1 0 0 C\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
         ("1, ,0,0\n", "k.xyz:1: 4 columns; give three numbers x y z, and start other lines with #"),
         (
             "the knot 3_1 in five\n",
@@ -203,7 +209,7 @@ def test_where_counts_comments_and_blank_lines() -> None:
 )
 def test_errors_in_plain_text(content: str, message: str) -> None:
     with pytest.raises(FormatError) as caught:
-        text.read(content, "k.xyz")
+        parse(text, content, "k.xyz")
     assert str(caught.value) == message
 
 
@@ -223,14 +229,14 @@ SQUARE = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]]
 
 
 def test_vect() -> None:
-    curve = vect.read(VECT, "k.vect")
+    curve = parse(vect, VECT, "k.vect")
     assert lists(curve) == [TRIANGLE, SQUARE]
     assert [curve.where(0, 2), curve.where(1, 3)] == ["k.vect:6", "k.vect:10"]
 
 
 def test_vect_may_repeat_the_first_vertex() -> None:
     for count in (-4, 4):
-        assert lists(vect.read(f"VECT 1 4 0 {count} 0 {ROWS} 0 0 0", "k")) == [TRIANGLE]
+        assert lists(parse(vect, f"VECT 1 4 0 {count} 0 {ROWS} 0 0 0", "k")) == [TRIANGLE]
 
 
 @pytest.mark.parametrize(
@@ -263,7 +269,8 @@ def test_vect_may_repeat_the_first_vertex() -> None:
         (f"VECT\n1 3 0\n-3\n0\n{ROWS}0.5\n", "8: '0.5' is left over; correct the counts"),
         (
             f"VECT\n1 3 0\n3\n0\n{ROWS}",
-            "3: a polyline is open; closed polylines have a negative count: write -3",
+            "7: the chain is open: it ends here and began on line 5; --close direct joins its ends by an "
+            "edge, --close sphere by way of a sphere round it",
         ),
         (f"VECT\n2 3 0\n-3\n0\n0 0\n{ROWS}", "4: a polyline has no vertices; give at least 3"),
         (
@@ -282,7 +289,7 @@ def test_vect_may_repeat_the_first_vertex() -> None:
 )
 def test_errors_in_vect(content: str, message: str) -> None:
     with pytest.raises(FormatError) as caught:
-        vect.read(content, "k.vect")
+        parse(vect, content, "k.vect")
     assert str(caught.value) == f"k.vect:{message}"
 
 
@@ -340,8 +347,8 @@ def test_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_unknown_format_is_refused() -> None:
-    with pytest.raises(ValueError, match="unknown format 'obj'; the formats are: text, vect"):
-        formats.write("-", [], format="obj")
+    with pytest.raises(ValueError, match=r"unknown format 'stl'; the formats are: .*text, vect"):
+        formats.write("-", [], format="stl")
 
 
 def test_unwritable_files_are_named(tmp_path: Path) -> None:
@@ -359,8 +366,8 @@ def test_write_leaves_only_the_file(tmp_path: Path) -> None:
     path = tmp_path / "k.xyz"
     path.write_text("old")
     path.chmod(0o640)
-    with atomic_text(path) as stream:
-        stream.write("new")
+    with atomic(path) as stream:
+        stream.write(b"new")
         assert path.read_text() == "old"
     assert path.read_text() == "new"
     assert path.stat().st_mode & 0o777 == 0o640
@@ -370,8 +377,8 @@ def test_write_leaves_only_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("failure", [KeyboardInterrupt, OSError, ValueError])
 def test_failure_leaves_the_old_file(tmp_path: Path, failure: type[BaseException]) -> None:
     def fail() -> None:
-        with atomic_text(path) as stream:
-            stream.write("half")
+        with atomic(path) as stream:
+            stream.write(b"half")
             raise failure
 
     path = tmp_path / "k.xyz"
@@ -397,12 +404,9 @@ def test_links_and_pipes_are_not_replaced(tmp_path: Path) -> None:
     assert pipe.is_fifo()
 
 
-@pytest.mark.parametrize(("write", "read"), [(text.write, text.read), (vect.write, vect.read)])
-def test_large_files_are_quick(
-    write: Callable[[Sequence[NDArray[np.float64]], Sequence[str]], str],
-    read: Callable[[str, str], VertexFile],
-) -> None:
-    content = write([np.random.default_rng(1).normal(size=(100_000, 3))], [])
+@pytest.mark.parametrize("format", [text, vect])
+def test_large_files_are_quick(format: Any) -> None:
+    content = format.write([np.random.default_rng(1).normal(size=(100_000, 3))], [])
     start = time.process_time()
-    assert len(read(content, "large").components[0]) == 100_000
+    assert len(parse(format, content, "large").components[0]) == 100_000
     assert time.process_time() - start < 2  # 0.25 s as a rule

@@ -1,16 +1,20 @@
 """The prime links to 9 crossings: their names, and that braid, arcs and diagram of a row are one link."""
 
+import json
 import re
-from itertools import pairwise
-from typing import Any
+import sys
+from itertools import pairwise, product
 
 import pytest
 
 import sono
+from sono.curve import Components
 from sono.invariants import fingerprint, homfly
 from sono.invariants.crossings import diagram, linking_matrix
-from sono.starts import start, table
-from sono.starts.links import link_names, link_row, oriented_like
+from sono.starts import has_variants, knotinfo, start, table
+from sono.starts.links import link_names, oriented_like
+from sono.starts.spelling import spelled
+from sono.starts.tabled import table_row
 
 ROWS = table("links")
 LINKS = list(dict.fromkeys(row["link"].split("{")[0] for row in ROWS))
@@ -46,7 +50,7 @@ def test_there_are_130_by_two_names_each() -> None:
     ],
 )
 def test_one_link_has_many_names(name: str, link: str) -> None:
-    row = link_row(name)
+    row = table_row(spelled(name))
     assert row
     assert row["link"].split("{")[0] == link
     assert fingerprint(start(name)) == fingerprint(start(link))
@@ -63,11 +67,13 @@ def test_well_known_links_are_what_they_are() -> None:
     assert homfly(start("L2a1{1}")) == homfly(start("Hopf")) != homfly(start("L2a1{0}"))
 
 
-def _turned(curve: Any) -> list[Any]:
-    from sono.starts.links import _orientations
-
-    both = [curve, [component * (1, 1, -1) for component in curve]]
-    return [turned for one in both for turned in _orientations(one)]
+def _turned(curve: Components) -> list[Components]:
+    both: list[Components] = [curve, [component * (1, 1, -1) for component in curve]]
+    return [
+        [component[::turn] for component, turn in zip(one, turns, strict=True)]
+        for one in both
+        for turns in product((1, -1), repeat=len(curve))
+    ]
 
 
 @pytest.mark.parametrize("row", ROWS[::7], ids=lambda row: str(row["link"]))
@@ -78,6 +84,40 @@ def test_braid_diagram_and_arcs_are_one_oriented_link(row: dict[str, str]) -> No
     assert homfly(drawn) == str(regina.Link.fromPD(codes).homflyAZ())
     assert homfly(start(row["link"], 5)) == homfly(drawn)
     assert fingerprint(start(row["link"], 18)) == fingerprint(drawn)
+
+
+@pytest.mark.parametrize("row", ROWS[3::12], ids=lambda row: str(row["link"]))
+def test_a_link_has_variants_from_its_diagram_as_from_its_arcs(row: dict[str, str]) -> None:
+    drawn = start(row["link"])
+    for variant in (-1, -2, 7):
+        again = start(row["link"], variant)
+        assert fingerprint(again) == fingerprint(drawn)
+        assert homfly(again) == homfly(drawn)
+    assert has_variants(row["link"])
+    assert start(row["link"], -1)[0].tobytes() != start(row["link"], -2)[0].tobytes()
+
+
+@pytest.mark.parametrize(
+    "name", ["L10a1", "L10a121{1}", "L10n99{0,0,0}", "L10n113", "mL11a548", "l11N459", "L11a5#L11n7{1}"]
+)
+def test_links_of_10_and_11_crossings_are_those_of_linkinfo(name: str) -> None:
+    rows = pytest.importorskip("database_knotinfo").link_list(proper_links=True)
+    drawn = start(name)
+    for variant in (3, -1):
+        again = start(name, variant)
+        assert (fingerprint(again), homfly(again)) == (fingerprint(drawn), homfly(drawn))
+    for row in rows:
+        if row["name"] == name:
+            linking = json.loads(row["linking_matrix"].replace("{", "[").replace("}", "]"))
+            found = linking_matrix(diagram(drawn)).tolist()
+            assert sorted(map(sorted, found)) == sorted(map(sorted, linking))
+
+
+def test_without_linkinfo_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "database_knotinfo", None)
+    knotinfo.links.cache_clear()
+    with pytest.raises(ValueError, match=r"links of more than 9 crossings is an extra; .*sono\[knotinfo\]"):
+        start("L10a1")
 
 
 def test_another_link_is_not_oriented_like_the_model() -> None:
@@ -94,8 +134,6 @@ def test_links_tighten_by_name() -> None:
 
 def test_wrong_names_are_helped() -> None:
     assert set(LINKS) < set(link_names())
-    for wrong in ("L5a2", "9^2_62", "L10a1"):
+    for wrong in ("L5a2", "9^2_62", "L9a99", "Whitehaed"):
         with pytest.raises(ValueError, match="did you mean"):
             start(wrong)
-    with pytest.raises(ValueError, match="links have no negative variants"):
-        start("L5a1", -1)

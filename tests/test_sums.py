@@ -2,6 +2,7 @@
 
 from itertools import combinations_with_replacement
 
+import numpy as np
 import pytest
 
 import sono
@@ -39,7 +40,18 @@ def test_links_are_joined_at_their_first_components() -> None:
     assert sorted(linking_matrix(diagram(chain))[0].tolist()) == [0, 1, 1]
     assert homfly(chain) == homfly(start("Hopf#Hopf", 3))
     assert len(start("Borromean#4_1#Whitehead")) == 4
-    assert not has_variants("Hopf#3_1")
+    assert has_variants("Hopf#3_1")
+    assert not has_variants("T(2,5)#3_1")
+
+
+@pytest.mark.parametrize("name", ["L9a54#3_1", "L8n7#L8n8", "P(2,2,2)#L7a7", "5/2#dt:4 6 2#Hopf"])
+def test_a_part_whose_first_component_is_inside_is_drawn_another_way(name: str) -> None:
+    one, other = name.split("#", 1)
+    whole = start(name)
+    assert len(whole) == len(start(one)) + len(start(other)) - 1
+    lengths = [int(number) for number in np.abs(fingerprint(whole)[0])]
+    assert sum(lengths) == sum(abs(number) for part in (one, other) for number in fingerprint(start(part))[0])
+    assert homfly(whole) == homfly(start(name, 2))
 
 
 def test_sums_tighten_by_name() -> None:

@@ -15,6 +15,7 @@ from sono._core import PanicError
 from sono.formats import FormatError
 from sono.jobs import checkpoints, curvefiles, task
 from sono.jobs import tighten as batch
+from sono.jobs.sources import Source
 from sono.jobs.tighten import Job
 from sono.tightening import Progress, Run, Stopped
 from sono.tightening.plan import Stage
@@ -29,7 +30,7 @@ QUICK = {"anneal_sweeps": 5000, "seed": 0}
 def job(folder: Path) -> Job:
     """A job with two targets and a checkpoint."""
     outputs: dict[Target, str] = {40: "40.txt", 60: "60.txt"}
-    return Job("3_1.txt", "knot", outputs, QUICK, trials=2, checkpoint=Path("knot.json"))
+    return Job(Source("3_1.txt"), "knot", outputs, QUICK, trials=2, checkpoint=Path("knot.json"))
 
 
 def nothing(progress: Progress) -> None:
@@ -136,14 +137,14 @@ def test_checkpoints_follow_the_run(job: Job, monkeypatch: pytest.MonkeyPatch) -
 
 @contextmanager
 def full(path: Any) -> Iterator[None]:
-    """Stands in for `atomic_text` on a full disk."""
+    """Stands in for `atomic` on a full disk."""
     raise OSError(errno.ENOSPC, "No space left on device")
     yield
 
 
 def make_disk(monkeypatch: pytest.MonkeyPatch, write: Any) -> None:
     for module in (formats, formats.files):
-        monkeypatch.setattr(module, "atomic_text", write)
+        monkeypatch.setattr(module, "atomic", write)
 
 
 def test_a_disk_that_fills_up(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,7 +169,7 @@ def test_a_disk_that_fills_up(job: Job, monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_disk_that_is_full_for_a_while(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(task, "SAVE_EVERY", 0)
 
-    with_room = formats.atomic_text
+    with_room = formats.atomic
 
     def full_during_the_anneal(progress: Progress) -> None:
         make_disk(monkeypatch, full if progress.stage == "anneal" else with_room)
@@ -195,7 +196,7 @@ def test_the_row_of_a_coarse_rope_is_one_for_the_next(job: Job) -> None:
 
 def test_files_of_a_job(job: Job) -> None:
     assert job.files() == ["40.txt", "60.txt", "knot.json"]
-    assert Job("-", "stdin", {40: "-"}, QUICK).files() == []
+    assert Job(Source("-"), "stdin", {40: "-"}, QUICK).files() == []
 
 
 def test_measured_says_where(folder: Path) -> None:
@@ -211,7 +212,7 @@ def test_100_000_vertices(folder: Path) -> None:
     formats.write("fine.txt", [knot])
     _, measures = curvefiles.measured("fine.txt")
     assert measures.n == 100_000
-    (result,) = batch.run(Job("fine.txt", "fine", {60: "60.txt"}, QUICK), nothing)
+    (result,) = batch.run(Job(Source("fine.txt"), "fine", {60: "60.txt"}, QUICK), nothing)
     assert result.row
     assert result.row["status"] == "tight"
 
@@ -220,7 +221,7 @@ def test_100_000_vertices(folder: Path) -> None:
 def test_the_simplest_curves(folder: Path, name: str) -> None:
     triangle = [np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])]
     formats.write("flat.txt", starts.start("unknot") if name == "circle" else triangle)
-    (result,) = batch.run(Job("flat.txt", name, {40: "40.txt"}, QUICK), nothing)
+    (result,) = batch.run(Job(Source("flat.txt"), name, {40: "40.txt"}, QUICK), nothing)
     assert result.trouble is None
     assert result.row
     assert result.row["l_p"] == pytest.approx(2 * np.pi, rel=0.01)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from sono.calls import measure as measure
     from sono.calls import names as names
     from sono.calls import read as read
+    from sono.calls import read_all as read_all
     from sono.calls import refine as refine
     from sono.calls import search as search
     from sono.calls import start as start
@@ -63,6 +64,7 @@ _HOMES = {
     "measure": "sono.calls",
     "names": "sono.calls",
     "read": "sono.calls",
+    "read_all": "sono.calls",
     "refine": "sono.calls",
     "search": "sono.calls",
     "start": "sono.calls",

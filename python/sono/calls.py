@@ -16,6 +16,7 @@ from typing import Any, TypeAlias, cast
 from sono import _core, curve, formats, naming, starts
 from sono.curve import Curve as Curve
 from sono.curve import CurveLike, Forces, Measures, as_components
+from sono.formats.closing import WAYS, Close
 from sono.jobs.workers import Threads
 from sono.naming import Identity
 from sono.records import Record
@@ -40,11 +41,12 @@ def unseen(progress: Progress) -> None:
     """Watch nothing."""
 
 
-def read(path: str | os.PathLike[str]) -> Curve:
-    """Read a curve from a file: rows of x y z, a blank line between components, or Geomview VECT.
+def read(path: str | os.PathLike[str], close: Close | None = None) -> Curve:
+    """Read a curve from a file; "FILE:KEY" is one of a file that holds several, such as "traj.xyz:12".
 
-    A last vertex that repeats the first is dropped; lengths keep the file's unit. Raises `FormatError`, a
-    `ValueError` that names file and line.
+    Open chains are an error unless `close` says how their ends are joined: "direct" by an edge, "sphere" by
+    way of a sphere round the chain. A last vertex that repeats the first is dropped; lengths keep the file's
+    unit. Raises `FormatError`, a `ValueError` that names file and line.
 
     >>> import tempfile, pathlib
     >>> path = pathlib.Path(tempfile.mkdtemp(), "square.txt")
@@ -52,11 +54,25 @@ def read(path: str | os.PathLike[str]) -> Curve:
     >>> read(path)
     Curve(4 vertices)
     """
-    return Curve(formats.read(path).components)
+    return Curve(formats.read(path, _way(close)).components)
+
+
+def read_all(path: str | os.PathLike[str], close: Close | None = None) -> dict[str, Curve]:
+    """Read all curves of a file, such as the frames of a simulation, by their keys.
+
+    The key of an only curve may be empty. As for `read`, whose errors it raises.
+
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "square.txt")
+    >>> write(path, [[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
+    >>> read_all(path)
+    {'': Curve(4 vertices)}
+    """
+    return {file.key: Curve(file.components) for file in formats.read_all(path, _way(close))}
 
 
 def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[str] = ()) -> None:
-    """Write a curve to a file whose suffix names the format: .txt, .xyz, .dat or none are text, or .vect.
+    """Write a curve to a file whose suffix names the format; .txt, .dat or none are rows of x y z.
 
     Coordinates keep every digit, and the file appears whole or not at all; the `comments` come first. Raises
     `FormatError` where it cannot be written.
@@ -79,17 +95,22 @@ def names() -> list[str]:
     return starts.names()
 
 
-def start(name: str, variant: int = 0) -> Curve:
+def start(name: str, variant: int = 0, *, known: bool = False) -> Curve:
     """Return a loose conformation of the knot of this name, in units of about one rope radius.
 
-    Each `variant` is another conformation of the same type: see `sono start --help`. Raises `ValueError`,
-    with the nearest known name, for one that is not known.
+    Each `variant` is another conformation of the same type: see `sono start --help`. If `known`, it is the
+    shape that the atlas has of the knot instead, tight at R_s = 1 but for its coarse edges of 0.45 and its
+    coordinates in thousandths. Raises `ValueError`, with the nearest known name, for one that is not known.
 
-    >>> start("3_1"), len(start("Hopf"))
-    (Curve(69 vertices), 2)
+    >>> start("3_1"), len(start("Hopf")), start("3_1", known=True)
+    (Curve(69 vertices), 2, Curve(73 vertices))
     """
     if not isinstance(name, str):
         raise ValueError(f"{name!r} is no name of a knot")
+    if known:
+        if variant:
+            raise ValueError(f"variant = {variant}: the atlas has one shape of a knot")
+        return Curve(_known(name))
     return Curve(starts.start(name, whole("variant", variant, -(10**12))))
 
 
@@ -138,6 +159,7 @@ def tighten(
     method: Method = "both",
     trials: int = TRIALS,
     seed: int | None = None,
+    known: bool = True,
     time_limit: float | None = None,
     settings: Settings | Changes | None = None,
     watch: Callable[[Progress], object] = unseen,
@@ -147,7 +169,8 @@ def tighten(
     The rope has `n` vertices, all components together, 480 by default; or its edges are `dl` radii long, at
     most 1, as far as n is a whole number. With the method "both" SONO finds shapes in up to `trials` trials
     and the polish makes the best one exact; "sono" and "polish" do without the other. `settings` are the
-    parameters of both engines, or some of them by name; the seed is one.
+    parameters of both engines, or some of them by name; the seed is one. A knot by its name begins with the
+    shape that the atlas has of it, without any trials; if `known` is False, with the loose one of `start`.
 
     `watch` is called about ten times a second. If it returns True, and after `time_limit` seconds, the best
     state so far is returned, with `converged` False; what it raises ends the run and passes through.
@@ -164,7 +187,8 @@ def tighten(
         raise ValueError("give the number n of vertices or the length dl of edges, not both")
     target = float(dl) if dl is not None else whole("n", DEFAULT_N if n is None else n)
     curve, changes = _components(vertices), changed(settings, seed)
-    run = Run(curve, [target], changes, method, whole("trials", trials))
+    shape = starts.known(vertices) if known and isinstance(vertices, str) else None
+    run = Run(curve, [target], changes, method, whole("trials", trials), shape)
     return best_of(run, math.inf if time_limit is None else time_limit, watch)
 
 
@@ -260,6 +284,21 @@ def compare(rope: Rope, knot: str) -> Comparison:
     row = published.extrapolated({"knot": knot, "n": measures.n, "l_a": measures.l_a, "l_c": measures.l_c})
     found: Any = published.beside(row, published.table())
     return Comparison(*(found.get(field.name) for field in fields(Comparison)))
+
+
+def _known(name: str) -> list[Any]:
+    """Return the atlas's shape of a knot. Raises `ValueError` if there is none."""
+    if (shape := starts.known(name)) is None:
+        starts.start(name)  # says what is wrong with it, if it is no name at all
+        raise ValueError(f"the atlas has no shape of {name!r}")
+    return list(shape)
+
+
+def _way(close: Close | None) -> Close | None:
+    """Refuse another way to close chains."""
+    if close not in (None, *WAYS):
+        raise ValueError(f"close = {close!r}: give {' or '.join(map(repr, WAYS))}")
+    return close
 
 
 def _components(vertices: Rope) -> list[Any]:

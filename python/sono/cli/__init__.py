@@ -20,6 +20,7 @@ from sono.printing import printable
 COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",
     "compare": "Compare ropelengths with the published ones.",
+    "convert": "Write curves in another format.",
     "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
     "search": "Find the shortest tight rope of a knot.",

@@ -4,11 +4,15 @@ import os
 import sys
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from sono.cli import options, places
 from sono.cli.runner import Batch
+
+if TYPE_CHECKING:
+    from sono.jobs.atlas import Atlas
 
 COLUMNS = ("knot", "n", "l_a", "l_c", "l_c_fine", "published", "l_a_difference", "l_c_difference", "type")
 
@@ -48,8 +52,9 @@ def command(
 
     For each NAME, by default all prime knots up to 10 crossings, the rope in the atlas is measured and its
     type confirmed by invariants. With --update its search goes on to so many --trials, and what is shorter is
-    taken in; so is a rope from a FILE called NAME.txt or NAME.more.txt. Only one process at a time may update
-    a folder.
+    taken in; so is a rope from a FILE called NAME.txt or NAME.more.txt. What is shorter than the shapes that
+    the package carries, with which `sono tighten NAME` begins, takes their place. Only one process at a time
+    may update a folder.
     """
     # Imported here, since numpy would make --help wait.
     from sono import starts
@@ -66,12 +71,28 @@ def command(
         work = [AtlasJob.of(atlas, source, searches if update else None) for source in names]
         paths = [path for job in work if job.search for path in job.search.files()]
         paths += [str(Path(folder, "atlas.tsv")), atlas.path("any")] if update else []
-        places.prepare(paths, [], False)
+        places.prepare(paths, False)
         code = Batch(shown.table(), shown.quiet).run(work, workers.count)
+    if update and code < 128:
+        code = max(code, _refresh(atlas, shown))
     searched = [job.search.checkpoint for job in work if job.search]
     if searched:
         shown.tell(spent(searched))
     sys.exit(code)
+
+
+def _refresh(atlas: "Atlas", shown: options.Shown) -> int:
+    """Let the package carry what is shorter; return the exit code."""
+    from sono.formats import FormatError
+    from sono.jobs.shapes import refresh
+
+    try:
+        if shorter := refresh(atlas):
+            shown.tell(f"`sono tighten` now begins with these ropes of: {', '.join(shorter)}")
+    except FormatError as error:
+        options.complain(str(error))
+        return 1
+    return 0
 
 
 def _refuse(sources: tuple[str, ...], folder: str, update: bool) -> None:

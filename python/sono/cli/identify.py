@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
@@ -10,6 +11,8 @@ from sono import tables
 from sono.cli import options
 
 if TYPE_CHECKING:
+    from sono.formats import Close
+    from sono.jobs.sources import Source
     from sono.naming import Identity
 
 COLUMNS = ("file", "knot", "known", "crossings")
@@ -18,9 +21,10 @@ COLUMNS = ("file", "knot", "known", "crossings")
 @click.command("identify")
 @options.files
 @click.option("--pd", is_flag=True, help="Write PD codes, a line for each FILE, instead of a table.")
+@options.close
 @options.table(COLUMNS)
-def command(sources: tuple[str, ...], pd: bool, shown: options.Shown) -> None:
-    """Name the knot or link of curves: a row for each FILE, - for standard input.
+def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: options.Shown) -> None:
+    """Name the knot or link of curves: a row for each FILE, - for standard input, or each curve in it.
 
     Names are those of KnotInfo for prime knots to 13 crossings and of LinkInfo for prime links to 9; m is the
     mirror image, # a connected sum, + stands between parts that are not linked. A name is proven where moves
@@ -33,38 +37,40 @@ def command(sources: tuple[str, ...], pd: bool, shown: options.Shown) -> None:
     """
     # Imported here, since numpy would make --help wait.
     from sono.formats import FormatError
+    from sono.jobs.sources import curves
 
     failed = False
     with shown.table(taken=pd) as table:
-        for source in sources:
+        for source in chain.from_iterable(curves(given, close) for given in sources):
             try:
-                name, found = _identified(source)
+                doubts, found = _identified(source)
             except FormatError as error:
                 failed = True
                 options.complain(str(error))
                 continue
+            for doubt in doubts:
+                shown.tell(doubt)
             if pd:
-                _write_pd(name, found, shown)
-            table.row(row(name, found))
+                _write_pd(str(source), found, shown)
+            table.row(row(str(source), found))
     sys.exit(1 if failed else 0)
 
 
-def _identified(source: str) -> "tuple[str, Identity]":
-    """Return a file's name, and what it holds. Raises `FormatError`."""
-    from sono import formats, naming, starts
+def _identified(source: "Source") -> "tuple[list[str], Identity]":
+    """Return what is doubtful about a curve, and what it is. Raises `FormatError`."""
+    from sono import naming, starts
     from sono._core import CurveError
     from sono.formats import FormatError
     from sono.invariants import TooEntangledError
     from sono.jobs.curvefiles import located
-    from sono.jobs.sources import is_name
     from sono.patience import patiently
 
-    if is_name(source) and starts.knows(source):
-        start = f"`sono start {shlex.quote(source)} | sono identify -`"
+    if source.knot and starts.knows(source.knot):
+        start = f"`sono start {shlex.quote(source.knot)} | sono identify -`"
         raise FormatError(f"{source}: no such file; identify takes files; {start} identifies a loose start")
-    file = formats.read(source)
+    file = source.read()
     try:
-        return file.name, patiently(lambda: naming.identify(file.components))
+        return file.doubts(), patiently(lambda: naming.identify(file.components))
     except TooEntangledError as error:
         raise FormatError(f"{file.name}: {error}") from error
     except CurveError as error:

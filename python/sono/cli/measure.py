@@ -4,22 +4,30 @@ import shlex
 import sys
 from dataclasses import replace
 from functools import partial
+from itertools import chain
+from typing import TYPE_CHECKING
 
 import click
 
 from sono import tables
-from sono.cli import options, places
+from sono.cli import options
+
+if TYPE_CHECKING:
+    from sono.formats import Close
+    from sono.jobs.sources import Source
 
 
 @click.command("measure")
 @options.files
 @click.option("--residual", is_flag=True, help="Add how far the forces in the rope are from balance.")
+@options.close
 @options.table((*tables.DEFAULT, "dispersion", "r_s"))
-def command(sources: tuple[str, ...], residual: bool, shown: options.Shown) -> None:
-    """Measure curves: a row for each FILE, - for standard input.
+def command(sources: tuple[str, ...], residual: bool, close: "Close | None", shown: options.Shown) -> None:
+    """Measure curves: a row for each FILE, - for standard input, or for each curve in it; FILE:KEY is one.
 
-    FILE holds rows of x y z, with # comments and a blank line between the components of a link; or it is a
-    Geomview VECT file. Nothing is moved or scaled. L_c, a bound, is a dash where R_s <= dl/sqrt 2.
+    FILE holds rows of x y z, with # comments and a blank line between the components of a link, or a header
+    that names the columns; or it is of another format that is read. Nothing is moved or scaled. L_c, a bound,
+    is a dash where R_s <= dl/sqrt 2.
 
     The residual is the largest force, tension being 1, that is left over on a vertex when tensions, contact
     forces and bending couples balance as well as they can (non-negative least squares): 0 for a tight rope,
@@ -27,12 +35,13 @@ def command(sources: tuple[str, ...], residual: bool, shown: options.Shown) -> N
     """
     # Imported here, since numpy would make --help wait.
     from sono.formats import FormatError
+    from sono.jobs.sources import curves
 
     if residual and "residual" not in shown.columns:
         shown = replace(shown, columns=[*shown.columns, "residual"])
     failed = False
     with shown.table() as table:
-        for source in sources:
+        for source in chain.from_iterable(curves(given, close) for given in sources):
             try:
                 row, doubts = _measured(source, "residual" in shown.columns)
             except FormatError as error:
@@ -45,22 +54,23 @@ def command(sources: tuple[str, ...], residual: bool, shown: options.Shown) -> N
     sys.exit(1 if failed else 0)
 
 
-def _measured(source: str, residual: bool) -> tuple[tables.Row, list[str]]:
-    """Return the row of a file, and what is doubtful about it. Raises `FormatError`."""
+def _measured(source: "Source", residual: bool) -> tuple[tables.Row, list[str]]:
+    """Return the row of a curve, and what is doubtful about it. Raises `FormatError`."""
     from sono import starts
     from sono.curve import forces
     from sono.formats import FormatError
-    from sono.jobs.curvefiles import measured
+    from sono.jobs.curvefiles import measures_of
     from sono.jobs.result import as_row
-    from sono.jobs.sources import is_name
     from sono.patience import patiently
 
-    if is_name(source) and starts.knows(source):
-        start = f"`sono start {shlex.quote(source)} | sono measure -`"
+    if source.knot and starts.knows(source.knot):
+        start = f"`sono start {shlex.quote(source.knot)} | sono measure -`"
         raise FormatError(f"{source}: no such file; measure takes files; {start} measures a loose start")
-    curve, measures = measured(source)
+    curve = source.read()
+    measures = measures_of(curve)
     doubts = curve.doubts()
+    file = f"{curve.name}:{curve.key}" if curve.key else curve.name
     if measures.l_c is None:
-        doubts.append(f"{curve.name}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
+        doubts.append(f"{file}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
     more = {"residual": patiently(partial(forces, curve.components)).residual} if residual else {}
-    return as_row(places.knot_name(source), curve.name, measures, **more), doubts
+    return as_row(source.name, file, measures, **more), doubts

@@ -5,7 +5,7 @@ import io
 import math
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
@@ -16,6 +16,7 @@ from sono.cli.streams import complain as complain
 from sono.tables import TableWriter
 
 if TYPE_CHECKING:
+    from sono.formats import Close
     from sono.jobs.workers import Cluster, Threads
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -29,16 +30,37 @@ def files(function: Function) -> Function:
     return click.argument("sources", metavar="FILE...", nargs=-1, required=True)(function)
 
 
+def codes(function: Function) -> Function:
+    """`--pd`, `--dt` and `--gauss`, as names in `codes`."""
+
+    @click.option(
+        "--pd", multiple=True, metavar="CODE", help='A diagram: "X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]".'
+    )
+    @click.option(
+        "--dt", multiple=True, metavar="CODE", help='A diagram: "4 6 2", or "[[6,8],[2,4]]" of a link.'
+    )
+    @click.option(
+        "--gauss", multiple=True, metavar="CODE", help='A diagram: "1 -2 3 -1 2 -3", or "1 -2 | 2 -1".'
+    )
+    @functools.wraps(function)
+    def command(pd: tuple[str, ...], dt: tuple[str, ...], gauss: tuple[str, ...], **more: object) -> object:
+        given = (("pd", pd), ("dt", dt), ("gauss", gauss))
+        return function(codes=[f"{kind}:{code}" for kind, written in given for code in written], **more)
+
+    return cast("Function", command)
+
+
 def knots(function: Function) -> Function:
-    """Files or names of knots, as arguments and from `--list`, of which `--shard` takes a part."""
+    """Names, codes or files of knots, as arguments and from `--list`, of which `--shard` takes a part."""
 
     @click.argument("arguments", metavar="[FILE|NAME]...", nargs=-1)
+    @codes
     @click.option(
         "--list",
         "list_file",
         metavar="FILE",
         type=click.Path(allow_dash=True, dir_okay=False, exists=True),
-        help="More files or names, one a line; # begins a comment.",
+        help="More files or names, one a line; # after a space or at the beginning of one begins a comment.",
     )
     @click.option(
         "--shard",
@@ -46,22 +68,32 @@ def knots(function: Function) -> Function:
         callback=_shard,
         help="Take only every N-th of them, beginning with the I-th: for arrays of jobs.",
     )
+    @close
     @functools.wraps(function)
     def command(
-        arguments: tuple[str, ...], list_file: str | None, shard: slice | None, **more: object
+        *,
+        arguments: tuple[str, ...],
+        codes: list[str],
+        list_file: str | None,
+        shard: slice,
+        close: "Close",
+        **more: object,
     ) -> object:
-        sources = [*arguments, *(_listed(list_file) if list_file else [])]
-        if not sources:
+        from sono.jobs.sources import curves  # here, since numpy would make --help wait
+
+        given = [*arguments, *codes, *(_listed(list_file) if list_file else [])]
+        if not given:
             raise click.UsageError("give a FILE or the NAME of a knot, or a --list of them")
-        if not sources[shard or slice(None)]:
+        sources = [curve for source in given for curve in curves(source, close)]
+        if not sources[shard]:
             complain("nothing to do: there are fewer knots than shards")
             return None
-        return function(sources=sources[shard or slice(None)], **more)
+        return function(sources=sources[shard], **more)
 
     return cast("Function", command)
 
 
-def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> slice | None:
+def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> slice:
     match = re.fullmatch(r"(\d{1,15})/(\d{1,15})", value or "1/1")
     if not match or not 1 <= int(match[1]) <= int(match[2]):
         raise click.BadParameter(f"{value!r}: give I/N with I from 1 to N, such as 3/20")
@@ -71,17 +103,26 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> sli
 def _listed(path: str) -> list[str]:
     try:
         with click.open_file(path, encoding="utf-8", errors="surrogateescape") as lines:
-            words = (line.split("#")[0].strip() for line in lines)
+            words = (re.split(r"(?:^|\s)#", line)[0].strip() for line in lines)
             return [word for word in words if word]
     except OSError as error:
         raise click.UsageError(f"{path}: cannot be read: {error.strerror}") from error
 
 
-def tell_of_shadows(sources: Sequence[str], shown: "Shown") -> None:
+def close(function: Function) -> Function:
+    """`--close`."""
+    return click.option(
+        "--close",
+        type=click.Choice(["direct", "sphere"]),
+        help="Close open chains, by an edge between the ends or by way of a sphere round the chain.",
+    )(function)
+
+
+def tell_of_shadows(sources: Iterable[object], shown: "Shown") -> None:
     """Say which sources are files called like a knot."""
     from sono.jobs.sources import shadowed  # here, since numpy would make --help wait
 
-    for source in filter(shadowed, sources):
+    for source in filter(shadowed, map(str, sources)):
         why = "is a file here, which is taken, and not the knot of this name"
         shown.tell(f"{source}: {why}; `sono start {source}` draws that")
 

@@ -1,23 +1,15 @@
 """Where a command writes: names of files, tried, locked and made ready before hours are spent."""
 
 import errno
-import io
 import os
-import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from pathlib import Path
 
 import click
 
 from sono.cli.streams import complain
 from sono.jobs.locks import Claims, Taken
-
-
-def knot_name(source: str) -> str:
-    """A file's name without folder and suffix; "stdin" for standard input."""
-    return "stdin" if source == "-" else Path(source).stem
 
 
 def names_one_file(path: str) -> bool:
@@ -42,8 +34,8 @@ def fresh(force: bool, resume: bool) -> bool:
     return not (force or resume)
 
 
-def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool, more: Iterable[str] = ()) -> None:
-    """Before hours are spent: see that these files can be written, by nobody else, and read standard input.
+def prepare(paths: Sequence[str], fresh: bool, more: Iterable[str] = ()) -> None:
+    """Before hours are spent: see that these files can be written, by nobody else.
 
     If `fresh`, a file that is there is an error. `more` are names that may be written besides.
     """
@@ -62,10 +54,6 @@ def prepare(paths: Sequence[str], sources: Sequence[str], fresh: bool, more: Ite
             )
     for path in (*paths, *more):
         _try(path)
-    if "-" in sources:
-        # Here, since a signal does not reach a thread that waits for input.
-        with suppress(OSError):  # the job that reads it again will say so
-            sys.stdin = io.TextIOWrapper(io.BytesIO(sys.stdin.buffer.read()))
 
 
 def claim(paths: Sequence[str]) -> None:
@@ -77,7 +65,7 @@ def claim(paths: Sequence[str]) -> None:
     if "sono.claims" not in context.meta:
         context.meta["sono.claims"] = context.with_resource(Claims())
     for folder in dict.fromkeys(os.path.dirname(path) for path in paths):
-        _make_folder(folder or ".")
+        make_folder(folder or ".")
         try:
             context.meta["sono.claims"].take(path for path in paths if os.path.dirname(path) == folder)
         except OSError as error:  # a file system without locks
@@ -85,7 +73,7 @@ def claim(paths: Sequence[str]) -> None:
             complain(f"{folder or '.'}: {why}; let no other sono write here meanwhile")
 
 
-def _make_folder(folder: str) -> None:
+def make_folder(folder: str) -> None:
     """Make a folder, or make sure that it can be written to."""
     try:
         os.makedirs(folder, exist_ok=True)

@@ -4,13 +4,16 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from sono import tables
 from sono.cli import options, places
 from sono.cli.runner import Batch
+
+if TYPE_CHECKING:
+    from sono.jobs.sources import Source
 
 COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
 
@@ -47,7 +50,7 @@ COLUMNS = (*tables.DEFAULT, "residual", "hits", "trials", "variant", "status")
 @options.resume("finished")
 @options.table(COLUMNS)
 def command(
-    sources: list[str],
+    sources: "list[Source]",
     trials: int | None,
     time_limit: float | None,
     dl: float,
@@ -60,7 +63,7 @@ def command(
     resume: bool,
     shown: options.Shown,
 ) -> None:
-    """Search for the shortest tight rope of each knot, a NAME such as 8_20 or a FILE.
+    """Search for the shortest tight rope of each knot, a NAME such as 8_20 or a FILE, or each curve in it.
 
     Each trial tightens another starting conformation on few beads; the most promising shapes are refined and
     polished. The rows are the shortest minima found: hits tells in how many trials. The best rope so far is
@@ -75,14 +78,14 @@ def command(
         same: dict[str, Any] = {"time_limit": time_limit, "seed": seed, "dl": dl, "minima": minima}
         work = [
             SearchJob(
-                *(source, name, path, workers, trials),
-                checkpoint=_checkpoint(checkpoint, name),
+                *(source, source.name, path, workers, trials),
+                checkpoint=_checkpoint(checkpoint, source.stem),
                 resume=resume,
                 **same,
             )
-            for source, name, path in _plan(sources, output)
+            for source, path in _plan(sources, output)
         ]
-        places.prepare([path for job in work for path in job.files()], sources, fresh)
+        places.prepare([path for job in work for path in job.files()], fresh)
         options.tell_of_shadows(sources, shown)
         sys.exit(Batch(shown.table(output == "-"), shown.quiet).run(work, workers.count))
 
@@ -91,14 +94,13 @@ def _checkpoint(folder: str | None, name: str) -> Path | None:
     return Path(folder, f"{name}.search.json") if folder else None
 
 
-def _plan(sources: list[str], output: str | None) -> Iterator[tuple[str, str, str]]:
-    """Give the name of each source, and where its vertices go."""
+def _plan(sources: "list[Source]", output: str | None) -> "Iterator[tuple[Source, str]]":
+    """Say where each source's vertices go."""
     for source in sources:
-        name = places.knot_name(source)
         if output and places.names_one_file(output):
             if len(sources) > 1:
                 raise click.UsageError("-o names one file for several knots; name a folder (FOLDER/)")
             places.check_suffix(output)
-            yield source, name, output
+            yield source, output
         else:
-            yield source, name, os.path.join(output or "", f"{name}.tight.txt")
+            yield source, os.path.join(output or "", f"{source.stem}.tight.txt")

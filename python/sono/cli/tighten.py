@@ -15,6 +15,7 @@ from sono.cli.runner import Batch
 from sono.jobs.locks import Taken
 
 if TYPE_CHECKING:
+    from sono.jobs.sources import Source
     from sono.jobs.tighten import Job
     from sono.tightening import Method
     from sono.tightening.targets import Target
@@ -83,6 +84,13 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     help="Shapes to find with the method both; the shortest is polished. The first 4 will do where they "
     "agree, or are longer than 150.",
 )
+@click.option(
+    "--start",
+    type=click.Choice(["known", "drawn"]),
+    default="known",
+    show_default=True,
+    help="For a NAME: polish the shape that the atlas has of it, if any, or tighten the loose start.",
+)
 @options.output(
     "File or folder/ for the vertices, - for standard output.  [default: NAME.nN.txt, or NAME.dlDL.txt, here]"
 )
@@ -108,7 +116,7 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
 @options.resume("there")
 @options.table((*tables.DEFAULT, "status"))
 def command(
-    sources: list[str],
+    sources: "list[Source]",
     numbers: "list[Target]",
     lengths: "list[Target]",
     pool: options.Pool,
@@ -116,6 +124,8 @@ def command(
     **asked: Any,
 ) -> None:
     """Tighten each FILE (- for standard input), or the knot of that name, and write a row for each N or DL.
+
+    Of a FILE that holds several curves, such as a trajectory, each is tightened; FILE:KEY is one of them.
 
     The rope has radius 1. L_p, L_c and L_a are what the written vertices measure. Where a run is stopped by
     Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt, unless it is on a cluster.
@@ -136,11 +146,12 @@ def command(
 
 
 def _work(
-    sources: list[str],
+    sources: "list[Source]",
     targets: "list[Target]",
     *,
     method: "Method",
     trials: int,
+    start: str,
     output: str | None,
     contacts: str | None,
     force: bool,
@@ -160,37 +171,42 @@ def _work(
     if output == contacts == "-":
         raise click.UsageError("standard output cannot hold both vertices and contacts; name a file for one")
     same: dict[str, Any] = {"settings": _settings(seed, pairs), "method": method, "trials": trials}
-    same |= {"time_limit": time_limit, "resume": resume}
+    same |= {"time_limit": time_limit, "resume": resume, "known": start == "known"}
     work = [
-        Job(source, name, outputs, **_beside(name, outputs, contacts, checkpoint, len(sources)), **same)
-        for source, name, outputs in _plan(sources, targets, output, fresh)
+        Job(
+            source,
+            source.name,
+            outputs,
+            **_beside(source.stem, outputs, contacts, checkpoint, len(sources)),
+            **same,
+        )
+        for source, outputs in _plan(sources, targets, output, fresh)
     ]
     unfinished = (free_name(path) for job in work for path in job.outputs.values() if path != "-")
-    places.prepare([path for job in work for path in job.files()], sources, fresh, unfinished)
+    places.prepare([path for job in work for path in job.files()], fresh, unfinished)
     return work
 
 
 def _plan(
-    sources: list[str], targets: "list[Target]", output: str | None, fresh: bool
-) -> "Iterator[tuple[str, str, dict[Target, str]]]":
-    """Give the name of each source, and where its vertices for each target go."""
-    names = [places.knot_name(source) for source in sources]
+    sources: "list[Source]", targets: "list[Target]", output: str | None, fresh: bool
+) -> "Iterator[tuple[Source, dict[Target, str]]]":
+    """Say where the vertices of each source for each target go."""
     if output and places.names_one_file(output):
         if len(sources) * len(targets) > 1:
             raise click.UsageError(
                 "-o names one file, but there are several results; name a folder (FOLDER/)"
             )
         places.check_suffix(output)
-        yield sources[0], names[0], {targets[0]: output}
+        yield sources[0], {targets[0]: output}
         return
-    for source, name in zip(sources, names, strict=True):
+    for source in sources:
         files = (
             {target: os.path.join(output or "", f"{stem}.{_label(target)}.txt") for target in targets}
-            for stem in chain([name], (f"{name}-{number}" for number in count(2)))
+            for stem in chain([source.stem], (f"{source.stem}-{number}" for number in count(2)))
         )
         # Nobody chose the name "stdin", so a pipe that is run again takes the next one.
         free = (paths for paths in files if _is_free(list(paths.values())))
-        yield source, name, next(free if source == "-" and fresh else files)
+        yield source, next(free if source.piped and fresh else files)
 
 
 def _label(target: "Target") -> str:

@@ -29,6 +29,17 @@ def closing_edge(vertices: Floats) -> float:
 
 
 @np.errstate(over="ignore", invalid="ignore")
+def gaps(vertices: Floats) -> NDArray[np.int64]:
+    """Give the edges within a chain (n, 3) after which another may begin: few, and far longer than others."""
+    edges = np.linalg.norm(np.diff(vertices, axis=0), axis=1)
+    if len(edges) < LEAST:
+        return np.zeros(0, np.int64)
+    far = edges > FAR * np.median(edges)
+    apart = far.any() and LEAST * far.sum() <= len(edges) and edges[far].min() > STEPS * edges[~far].max()
+    return np.flatnonzero(far) if apart else np.zeros(0, np.int64)
+
+
+@np.errstate(over="ignore", invalid="ignore")
 def jumps(components: Sequence[Floats]) -> tuple[NDArray[np.int64], dict[str, float]]:
     """Give the edges, counted through all components, that jump through a periodic box, and its size by axis.
 

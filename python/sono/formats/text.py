@@ -8,15 +8,17 @@ A `#` starts a comment anywhere. A line that holds only a comment separates noth
     ...
 
     0 0 1.5        # first vertex of the second component
+
+A header, or more columns, are left to `columns`.
 """
 
-import re
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.vertices import FormatError, VertexFile, not_a_number, numbers, shown
+from sono.formats import columns, layouts
+from sono.formats.vertices import Chain, FormatError, Raw, numbers
 
 
 def recognises(text: str) -> bool:
@@ -24,27 +26,31 @@ def recognises(text: str) -> bool:
     return True
 
 
-def read(text: str, name: str) -> VertexFile:
+def read(text: str, name: str) -> list[Raw]:
     """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
-    components: list[tuple[list[tuple[float, float, float]], list[int]]] = []
+    chains: list[Chain] = []
     rows: list[tuple[float, float, float]] = []
     lines: list[int] = []
+    comments: list[str] = []
     for number, line in enumerate((*text.split("\n"), ""), 1):  # the empty line ends the last component
         data = line.partition("#")[0].strip()
         if data:
-            cells = _cells(data)
             try:
-                x, y, z = numbers(cells)
+                x, y, z = numbers(_cells(data))
             except ValueError:
-                raise FormatError.at(name, number, _wrong(cells)) from None
+                if not rows and not chains:
+                    return columns.read(text, name)
+                raise FormatError.at(name, number, layouts.wrong(data)) from None
             rows.append((x, y, z))
             lines.append(number)
-        elif rows and not line.strip():
-            components.append((rows, lines))
+        elif "#" in line:
+            comments.append(line.partition("#")[2].strip())
+        elif rows:
+            chains.append(Chain(rows, lines))
             rows, lines = [], []
-    if not components:
+    if not chains:
         raise FormatError.at(name, 1, "the file holds no vertices; give rows of three numbers x y z")
-    return VertexFile.checked(name, components)
+    return [Raw(chains, comments=comments)]
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:
@@ -56,16 +62,8 @@ def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) ->
 
 
 def _cells(data: str) -> list[str]:
-    """Split a row; a comma beside another one leaves an empty cell, so that a missing number is noticed."""
     if "," not in data:
         return data.split()
     if data.count(",") == 2:  # twice as fast as the general way, for the common case; float() strips
         return data.split(",")
-    return re.split(r"\s*,\s*|\s+", data)
-
-
-def _wrong(cells: Sequence[str]) -> str:
-    bad = not_a_number(cells)
-    if len(cells) != 3 or bad is None:
-        return f"{len(cells)} columns; give three numbers x y z, and start other lines with #"
-    return f"{shown(cells[bad])} is not a number; give three numbers x y z, and start other lines with #"
+    return layouts.cells_of(data)

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.vertices import FormatError, VertexFile, ends_meet, not_a_number, numbers, shown
+from sono.formats.vertices import Chain, FormatError, Raw, not_a_number, numbers, shown
 
 
 def recognises(text: str) -> bool:
@@ -24,7 +24,7 @@ def recognises(text: str) -> bool:
     return next(words, "").endswith("VECT")
 
 
-def read(text: str, name: str) -> VertexFile:
+def read(text: str, name: str) -> list[Raw]:
     """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
     words = _Words(text, name)
     words.header()
@@ -39,10 +39,11 @@ def read(text: str, name: str) -> VertexFile:
         lines.append(words.line)
     words.agree(sum(map(abs, sizes)), vertices, "vertices")
     words.agree(sum(words.count("the colour count of a polyline") for _ in sizes), colours, "colours")
-    components = [words.rows(size, line) for size, line in zip(sizes, lines, strict=True)]
+    chains = [words.chain(size, line) for size, line in zip(sizes, lines, strict=True)]
     words.numbers(4 * colours, "a colour")
     words.end()
-    return VertexFile.checked(name, components)
+    comments = [line.partition("#")[2].strip() for line in text.split("\n") if line.lstrip().startswith("#")]
+    return [Raw(chains, comments=comments)]
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:
@@ -124,18 +125,14 @@ class _Words:
             self._next += bad + 1 - count
             raise self.error(f"{shown(words[bad])} is not a number; {what} should stand here") from None
 
-    def rows(self, size: int, line: int) -> tuple[list[list[float]], list[int]]:
+    def chain(self, size: int, line: int) -> Chain:
         """Take the vertices of a polyline whose count stands on `line`."""
         if size == 0:
             raise FormatError.at(self._name, line, "a polyline has no vertices; give at least 3")
         first = self._next
         flat = self.numbers(3 * abs(size), "a vertex")
         rows = [flat[i : i + 3] for i in range(0, len(flat), 3)]
-        if size > 0 and not ends_meet(np.array(rows)):
-            raise FormatError.at(
-                self._name, line, f"a polyline is open; closed polylines have a negative count: write {-size}"
-            )
-        return rows, self._lines[first : self._next : 3]
+        return Chain(rows, self._lines[first : self._next : 3], closed=size < 0)
 
     def end(self) -> None:
         if self._next < len(self._words):

@@ -3,12 +3,13 @@
 import math
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import Self
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sono.formats.closing import Close, closing
 from sono.formats.doubts import closing_edge, jumps
 
 REPEATED = 1e-4
@@ -33,76 +34,149 @@ class FormatError(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
+class Chain:
+    """One component as a file has it: its vertices, `rows` (n, 3), and the `lines` (n,) that they stand on.
+
+    A format in which chains may be open says whether this one is `closed`; None leaves that to its ends.
+    """
+
+    rows: Any
+    lines: Sequence[int]
+    closed: bool | None = True
+
+
+@dataclass(frozen=True, eq=False)
+class Raw:
+    """A curve as a format has read it, not yet checked.
+
+    The `key` tells it from the others in its file, if there may be any. The `notes` tell the user what was
+    made of the file. The `comments` are what the file says of it.
+    """
+
+    chains: Sequence[Chain]
+    key: str = ""
+    notes: Sequence[str] = ()
+    comments: Sequence[str] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class VertexFile:
-    """A curve as read: `components`, each (n_i, 3) in the file's unit, and the `lines`, each (n_i,)."""
+    """A curve as read: `components`, each (n_i, 3) in the file's unit, and the `lines`, each (n_i,).
+
+    The `key` tells it from others of the same file. The `notes` tell the user what was made of the file, the
+    `comments` are what the file says of the curve.
+    """
 
     name: str
     components: list[NDArray[np.float64]]
     lines: list[NDArray[np.int64]]
+    key: str = ""
+    notes: Sequence[str] = ()
+    comments: Sequence[str] = ()
 
     def where(self, component: int, vertex: int) -> str:
         """Say where a vertex stands (both indices 0-based), as "name:line"."""
         return f"{self.name}:{self.lines[component][vertex]}"
 
     def doubts(self) -> list[str]:
-        """Say which components look like open chains."""
-        return [
+        """Say what was made of the file, and which components look like open chains."""
+        return [*self.notes] + [
             f"{self.where(component, -1)}: the edge that closes the curve, from here back to line "
-            f"{self.lines[component][0]}, is {far:.0f} times the mean edge; "
-            "if this chain is open, its knot is what this edge makes of it"
+            f"{self.lines[component][0]}, is {far:.0f} times the mean edge; if this chain is open, its knot "
+            "is what this edge makes of it: --close sphere closes it round the outside"
             for component, vertices in enumerate(self.components)
             if (far := closing_edge(vertices))
         ]
 
     @classmethod
-    def checked(
-        cls, name: str, components: Sequence[tuple[Sequence[Sequence[float]], Sequence[int]]]
-    ) -> "VertexFile":
-        """Check components, each as (rows of x y z, their line numbers). Raises `FormatError`."""
-        pairs = [_closed(name, np.array(rows, np.float64), np.array(lines)) for rows, lines in components]
-        curve = cls(name, [vertices for vertices, _ in pairs], [lines for _, lines in pairs])
-        curve._refuse_jumps()
-        return curve
-
-    def _refuse_jumps(self) -> None:
-        edges, box = jumps(self.components)
-        if not box:
-            return
-        after = np.concatenate([np.roll(lines, -1) for lines in self.lines])[edges]
-        listed = ", ".join(map(str, after[:SHOWN])) + (" and so on" if len(after) > SHOWN else "")
-        sizes = " and ".join(f"{size:.4g} in {axis}" for axis, size in box.items())
-        raise FormatError.at(
-            self.name,
-            after[0],
-            f"a periodic box of about {sizes} has wrapped the curve, which jumps {len(after)} times, to the "
-            f"lines {listed}; unwrap it, or put vertices on these edges if they are meant to be so long",
+    def checked(cls, name: str, raw: Raw, close: Close | None = None) -> "VertexFile":
+        """Check a curve that was read, and close its open chains as asked. Raises `FormatError`."""
+        strands = [_Strand.of(name, chain) for chain in raw.chains]
+        _refuse_jumps(name, strands)
+        closed, notes = [], [*raw.notes]
+        for strand in strands:
+            strand, note = strand.closed(close)
+            closed.append(strand)
+            notes += [note] if note else []
+        return cls(
+            name, [it.vertices for it in closed], [it.lines for it in closed], raw.key, notes, raw.comments
         )
 
 
-def _closed(
-    name: str, vertices: NDArray[np.float64], lines: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Give one component as a closed polygon: the first vertex is not repeated, every edge has a length."""
-    finite = np.isfinite(vertices).all(axis=1)
-    if not finite.all():
-        raise FormatError.at(
-            name, lines[finite.argmin()], "a coordinate is not finite; give a number in its place"
-        )
-    if ends_meet(vertices):
-        vertices, lines = vertices[:-1], lines[:-1]
-    if len(vertices) < 3:
-        raise FormatError.at(
-            name,
-            lines[0],
-            f"the component that starts here has too few vertices: {len(vertices)}; give at least 3",
-        )
+@dataclass(frozen=True, eq=False)
+class _Strand:
+    """One component (n, 3) of a file: its first vertex is not repeated, every edge has a length."""
+
+    name: str
+    vertices: NDArray[np.float64]
+    lines: NDArray[np.int64]
+    is_open: bool
+    looks_open: bool
+
+    @classmethod
+    def of(cls, name: str, chain: Chain) -> Self:
+        """Check a chain. Raises `FormatError`."""
+        vertices, lines = np.array(chain.rows, np.float64), np.array(chain.lines)
+        finite = np.isfinite(vertices).all(axis=1)
+        if not finite.all():
+            raise FormatError.at(
+                name, lines[finite.argmin()], "a coordinate is not finite; give a number in its place"
+            )
+        meet = ends_meet(vertices)
+        if meet:
+            vertices, lines = vertices[:-1], lines[:-1]
+        if len(vertices) < 3:
+            raise FormatError.at(
+                name,
+                lines[0],
+                f"the component that starts here has too few vertices: {len(vertices)}; give at least 3",
+            )
+        apart = bool(closing_edge(vertices))
+        is_open = not meet and (apart if chain.closed is None else not chain.closed)
+        _refuse_twins(name, vertices, lines)
+        return cls(name, vertices, lines, is_open, apart)
+
+    def closed(self, close: Close | None) -> "tuple[_Strand, str | None]":
+        """Close a chain that is open, or looks so, as asked, and tell. Raises `FormatError`."""
+        if not self.is_open and not (close and self.looks_open):
+            return self, None
+        first, last = self.lines[[0, -1]]
+        if close is None:
+            raise FormatError.at(
+                self.name,
+                last,
+                f"the chain is open: it ends here and began on line {first}; --close direct joins its ends "
+                "by an edge, --close sphere by way of a sphere round it",
+            )
+        added = closing(self.vertices, close)
+        lines = np.concatenate([self.lines, np.full(len(added), last)])
+        way = "a sphere round it" if close == "sphere" else "the straight way"
+        note = f"{self.name}:{last}: the open chain that ends here was closed to line {first} by {way}"
+        return replace(self, vertices=np.vstack([self.vertices, added]), lines=lines), note
+
+
+def _refuse_twins(name: str, vertices: NDArray[np.float64], lines: NDArray[np.int64]) -> None:
     coincident = (vertices == np.roll(vertices, 1, axis=0)).all(axis=1)
     if coincident.any():
         i = coincident.argmax()
         raise FormatError.at(
             name, lines[i], f"this vertex equals its neighbour on line {lines[i - 1]}; delete one of the two"
         )
-    return vertices, lines
+
+
+def _refuse_jumps(name: str, strands: Sequence[_Strand]) -> None:
+    edges, box = jumps([strand.vertices for strand in strands])
+    if not box:
+        return
+    after = np.concatenate([np.roll(strand.lines, -1) for strand in strands])[edges]
+    listed = ", ".join(map(str, after[:SHOWN])) + (" and so on" if len(after) > SHOWN else "")
+    sizes = " and ".join(f"{size:.4g} in {axis}" for axis, size in box.items())
+    raise FormatError.at(
+        name,
+        after[0],
+        f"a periodic box of about {sizes} has wrapped the curve, which jumps {len(after)} times, to the "
+        f"lines {listed}; unwrap it, or put vertices on these edges if they are meant to be so long",
+    )
 
 
 def ends_meet(vertices: NDArray[np.float64]) -> bool:

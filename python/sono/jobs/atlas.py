@@ -21,7 +21,7 @@ from sono.curve import Components, forces, measure
 from sono.formats import FormatError
 from sono.formats.ropefile import TIGHT, Header, Searched
 from sono.invariants import fingerprint, homfly
-from sono.jobs.curvefiles import KEPT_RESIDUAL, header_of, measured, rope_in
+from sono.jobs.curvefiles import KEPT_RESIDUAL, measured, rope_in
 from sono.searching.minima import same_edges
 from sono.searching.trials import FINE_EDGE, Watch, unwatched
 from sono.tables import Row, Value, published
@@ -78,7 +78,7 @@ class Atlas:
                 return row
             file = self.path(knot)
             curve = measured(file)[0].components
-        origin = header_of(file).searched
+        origin = rope_in(file)[2].searched
         fine = _polished(curve, FINEST_EDGE, watch)
         # It may have left a groove of the beads that held it up.
         again = _polished(fine.curve, FINE_EDGE, watch)

@@ -10,6 +10,7 @@ from sono.formats.ropefile import TIGHT
 from sono.jobs.atlas import Atlas
 from sono.jobs.result import Result, Show
 from sono.jobs.search import SearchJob
+from sono.jobs.sources import Source
 from sono.jobs.workers import Workers
 from sono.tightening import Stopped
 
@@ -52,7 +53,7 @@ class AtlasJob:
 def atlas_search(name: str, folder: str, workers: Workers, trials: int, seed: int) -> SearchJob:
     """Make the search of a knot of the atlas, which keeps its rope and its state in a folder of its own."""
     return SearchJob(
-        name,
+        Source(name),
         name,
         str(Path(folder, f"{name}.s{seed}.tight.txt")),
         workers,

@@ -9,7 +9,6 @@ from typing import Any
 
 from sono import formats
 from sono.formats import FormatError
-from sono.jobs import sources
 from sono.jobs.curvefiles import free_name
 from sono.jobs.kept import kept_row
 from sono.jobs.result import Result
@@ -34,17 +33,17 @@ class SentJob:
         """Do the job, giving its rows when all of it has come back. `show` may raise `Stopped`."""
         job = self.job
         try:
-            content = formats.load(job.source) if not sources.is_name(job.source) else None
-            file = formats.parse(*content) if content else sources.read(job.source)
+            source = job.source.looked_at()
+            file = source.read()
             kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
             for n in kept:
                 yield kept_row(job, file, n)
             outputs = {n: output for n, output in job.outputs.items() if n not in kept}
             if not outputs:
                 return
-            sent = replace(job, outputs=outputs, resume=False)
+            sent = replace(job, source=source, outputs=outputs, resume=False)
             free = {path: free_name(path) for path in outputs.values()}
-            waiting = self.workers.submit(_away, sent, content, free, watch=lambda: show(0, "on the cluster"))
+            waiting = self.workers.submit(_away, sent, free, watch=lambda: show(0, "on the cluster"))
             results, texts = waiting()
         except FormatError as error:
             yield Result(None, str(error))
@@ -64,34 +63,28 @@ class SentJob:
             yield replace(result, row={**result.row, "file": None}) if result.row and lost else result
 
 
-def _away(
-    job: Job, content: tuple[str, str] | None, free: dict[str, str]
-) -> "tuple[list[Result], dict[str, str]]":
+def _away(job: Job, free: dict[str, str]) -> "tuple[list[Result], dict[str, bytes]]":
     """Do a job far from its files: give its results, and what is to be written to them.
 
-    `content` is the name and the text of its source, if that is a file; `free` says for each output where an
-    unfinished rope is to go.
+    Its source has been looked at. `free` says for each output where an unfinished rope is to go.
     """
     with tempfile.TemporaryDirectory() as folder:
         here: dict[str, str] = {}
 
         def moved(path: str) -> str:
-            suffix = "" if path == "-" else Path(path).suffix
+            suffix = "" if path == "-" else "".join(Path(path).suffixes[-2:])
             temporary = os.path.join(folder, f"{len(here)}{suffix}")
             here[temporary] = path
             here[free_name(temporary)] = free.get(path, path)
             return temporary
 
-        source = moved(content[0]) if content else job.source
-        if content:
-            formats.save(source, content[1])
         outputs = {n: moved(path) for n, path in job.outputs.items()}
         between = {n: moved(path) for n, path in job.forces.items()}
         done = [
             _named(result, here)
-            for result in run(replace(job, source=source, outputs=outputs, forces=between), lambda _: None)
+            for result in run(replace(job, outputs=outputs, forces=between), lambda _: None)
         ]
-        written = [path for path in here if path != source and os.path.exists(path)]
+        written = [path for path in here if os.path.exists(path)]
         return done, {here[path]: formats.load(path)[1] for path in written}
 
 

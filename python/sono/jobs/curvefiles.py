@@ -11,7 +11,7 @@ from typing import Any
 from sono import formats
 from sono._core import CurveError
 from sono.curve import Measures, measure
-from sono.formats import FormatError, VertexFile, is_stream, ropefile
+from sono.formats import FormatError, VertexFile, is_stream, ropefile, unpacked
 from sono.formats.ropefile import Header
 
 KEPT_RESIDUAL = 1e-6
@@ -22,17 +22,17 @@ contacts just out of touch, which at mu = 1e-11 bear that much, are left out."""
 def measured(source: str) -> tuple[VertexFile, Measures]:
     """Read and measure a curve file. Raises `FormatError` naming file and line."""
     file = formats.read(source)
-    return file, _measures(file)
+    return file, measures_of(file)
 
 
 def rope_in(path: str) -> tuple[VertexFile, Measures, Header]:
     """Read and measure a rope's file, and its header, likewise."""
-    name, text = formats.load(path)
-    file = formats.parse(name, text)
-    return file, _measures(file), ropefile.parse(text)
+    file, measures = measured(path)
+    return file, measures, ropefile.parse("".join(f"# {line}\n" for line in file.comments))
 
 
-def _measures(file: VertexFile) -> Measures:
+def measures_of(file: VertexFile) -> Measures:
+    """Measure a curve that was read, likewise."""
     try:
         return measure(file.components)
     except CurveError as error:
@@ -56,8 +56,9 @@ def free_name(output: str) -> str:
 
 def names_of_best(output: str) -> Iterator[str]:
     """Give the names beside `output` for unfinished results, one after the other."""
-    path = Path(output)
-    return (os.fspath(path.with_suffix(f".best{k}{path.suffix}")) for k in chain([""], count(2)))
+    path = Path(unpacked(output))
+    packed = output[len(unpacked(output)) :]
+    return (os.fspath(path.with_suffix(f".best{k}{path.suffix}{packed}")) for k in chain([""], count(2)))
 
 
 def digest(file: VertexFile, *settings: Any) -> str:
@@ -66,8 +67,3 @@ def digest(file: VertexFile, *settings: Any) -> str:
     for component in file.components:
         found.update(component.tobytes() + b"end of component")
     return found.hexdigest()[:32]
-
-
-def header_of(path: str) -> Header:
-    """Read the header of a rope's file. Raises `FormatError`."""
-    return ropefile.parse(formats.load(path)[1])

@@ -12,7 +12,7 @@ from sono import formats
 from sono.curve import measure
 from sono.formats import FormatError, VertexFile, is_stream
 from sono.formats.ropefile import STOPPED, STUCK, TIGHT, Header, Searched
-from sono.jobs import checkpoints, sources
+from sono.jobs import checkpoints
 from sono.jobs.curvefiles import digest, measured
 from sono.jobs.earlier import Earlier, left_in
 from sono.jobs.quest import Quest
@@ -50,7 +50,7 @@ class Hunt:
         self.file = file
         self.show = show
         self.over = False
-        self.named = job.source if sources.is_name(job.source) else None
+        self.named = job.source.knot
         self.search = Search(job.seed, max(KEPT, job.minima))
         self.begun = time.monotonic()
         self.delivered: tuple[Minimum, str] | None = None

@@ -1,15 +1,17 @@
 """What is asked for of one curve, and the rows that answer it."""
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from sono.curve import Measures
+from sono import starts
+from sono.curve import Components, Measures
 from sono.formats import VertexFile, is_stream
 from sono.formats.ropefile import STUCK
 from sono.jobs.curvefiles import digest
 from sono.jobs.result import Result, as_row
+from sono.jobs.sources import Source
 from sono.tables import Row
 from sono.tightening import Method
 from sono.tightening.settings import TRIALS, default_settings
@@ -18,15 +20,16 @@ from sono.tightening.targets import Target
 
 @dataclass(frozen=True)
 class Order:
-    """Tighten the curve in `source` ("-" is standard input) to each target that is in `outputs`.
+    """Tighten the curve of `source` to each target that is in `outputs`.
 
     `name` is the curve's name in tables. `outputs` says where the vertices for each go, and `forces` where
     those between them, if they are wanted; "-" is standard output. `time_limit` is in seconds. `checkpoint`
     is the file that keeps the state of the run. With `resume` a run goes on from its checkpoint, and outputs
-    that are there are not computed again.
+    that are there are not computed again. `known` lets the rope of a knot by name begin with the shape that
+    the atlas has of it.
     """
 
-    source: str
+    source: Source
     name: str
     outputs: dict[Target, str]
     settings: dict[str, Any]
@@ -36,6 +39,12 @@ class Order:
     time_limit: float | None = None
     checkpoint: Path | None = None
     resume: bool = False
+    known: bool = True
+
+    def shape(self) -> Components | None:
+        """Return the shape of the atlas that the rope begins with, if there is one."""
+        knot = self.source.knot if self.known and self.method == "both" else None
+        return starts.known(knot) if knot else None
 
     def files(self) -> list[str]:
         """Return the files that the job writes."""
@@ -74,4 +83,6 @@ def tolerance(order: Order) -> float:
 
 def made_from(order: Order, file: VertexFile) -> str:
     """Tell what a rope is made from: its curve, method and settings, as a digest."""
-    return digest(file, order.method, order.trials, order.settings)
+    shape = order.shape()
+    more = [digest(replace(file, components=list(shape)))] if shape else []
+    return digest(file, order.method, order.trials, order.settings, *more)

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sono.formats import is_stream
+from sono.jobs.sources import Source
 from sono.jobs.workers import Workers
 from sono.searching.trials import FINE_EDGE
 
 
 @dataclass(frozen=True)
 class Quest:
-    """Search the knot that `source` names, or the curve in that file, for its shortest tight rope.
+    """Search the knot that `source` names, or its curve, for its shortest tight rope.
 
     The search ends after so many `trials` or `time_limit` seconds, the last of which are for refining. The
     shortest minimum is written to `output` whenever a shorter one is found; in the end the `minima` shortest
@@ -21,7 +22,7 @@ class Quest:
     on from a checkpoint.
     """
 
-    source: str
+    source: Source
     name: str
     output: str
     workers: Workers

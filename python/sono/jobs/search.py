@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from sono.formats import FormatError
-from sono.jobs import checkpoints, sources
+from sono.jobs import checkpoints
 from sono.jobs.hunt import KIND, Hunt
 from sono.jobs.quest import Quest
 from sono.jobs.result import Result, Show
@@ -17,7 +17,7 @@ class SearchJob(Quest):
     def results(self, show: Show) -> Iterator[Result]:
         """Do the job; `show` is told how far it is, from 0 to 1, and what it does; it may raise `Stopped`."""
         try:
-            file = sources.read(self.source)
+            file = self.source.read()
             yield from (Result(None, note=doubt) for doubt in file.doubts())
             yield from Hunt(self, file, show).results()
         except FormatError as error:

@@ -138,6 +138,8 @@ class Task:
     def tried(self, tight: Tight) -> list[str]:
         """Say how the curve was made ready, which shapes the trials found, and which of them failed."""
         notes = []
+        if tight.known:
+            notes += ["begun with the atlas's shape; --start drawn begins with a loose one"]
         if tight.loosened:
             notes += ["as it is the curve holds only a thin rope; it was loosened first, by isotopic moves"]
         if len(tight.shapes) + len(tight.failed) > 1:
@@ -191,7 +193,9 @@ class Task:
         """Return the run at its beginning."""
         try:
             job = self.job
-            return Run(self.file.components, list(self.todo), job.settings, job.method, job.trials)
+            return Run(
+                self.file.components, list(self.todo), job.settings, job.method, job.trials, job.shape()
+            )
         except ValueError as error:
             raise FormatError(f"{self.file.name}: {error}") from error
 

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from sono.formats import FormatError
-from sono.jobs import sources
 from sono.jobs.kept import kept_row
 from sono.jobs.order import Order
 from sono.jobs.result import Result
@@ -27,7 +26,7 @@ class Job(Order):
 def run(job: Order, watch: Callable[[Progress], None]) -> Iterator[Result]:
     """Do a job, giving each row when its vertices are on the disk; `watch` may raise `Stopped`."""
     try:
-        file = sources.read(job.source)
+        file = job.source.read()
         yield from (Result(None, note=doubt) for doubt in file.doubts())
         kept = [n for n, output in job.outputs.items() if job.resume and os.path.isfile(output)]
         for n in kept:

@@ -1,4 +1,4 @@
-"""Knots drawn from a planar diagram: in the plane by the method of Tutte, then lifted at the crossings.
+"""Knots and links drawn from a planar diagram: by the method of Tutte, then lifted at the crossings.
 
 The diagram is a plane graph of crossings and middles of edges. With a point amid each face but the outer one
 it is a triangulation; once the outer face is fixed on a circle, every point is put into the weighted mean of
@@ -8,19 +8,14 @@ another conformation: strands that ran inside now run round all others.
 """
 
 from collections.abc import Sequence
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.curve import Components, measure
+from sono.curve import Components, Floats, measure
+from sono.starts.diagrams import Diagram, Slot, faces, pieces, reduced
 from sono.starts.drawing import divided
-
-Diagram: TypeAlias = list[tuple[int, int, int, int]]
-"""A PD code: for each crossing its four edges, from 1, counter-clockwise from the incoming lower one."""
-
-Slot: TypeAlias = tuple[int, int]
-"""A crossing, and the place of an edge among its four."""
+from sono.starts.torus import chain
 
 ROUNDS = 12
 """Rounds in which long lines get more weight; the drawing with the most even lines is taken."""
@@ -32,98 +27,104 @@ LONGEST = 2000
 """Ropelength up to which a drawing is taken; one in a hundred is longer. A rope in flat triangles is thin: at
 a length of 10,000 it takes ten seconds to collapse, if it does."""
 
+TRIES = 12
+"""Outer faces that are tried; a knot of 10 crossings has as many."""
+
 PULL = 0.3
 """The power of its length by which a line's weight grows in a round."""
 
 
+APART = 4.0
+"""Distance of the pieces of a split link, in radii."""
+
+
 def lifted(diagram: Diagram, seed: int) -> Components:
-    """Return the knot of a planar diagram without nugatory crossings.
+    """Return the knot or link of a planar diagram, from which nugatory crossings are removed first.
 
     The seed chooses the outer face and draws the first weights. The shortest line is 1 long, strands cross 2
     apart, and the next face is taken instead of one that leaves the others too little room; where all do, the
-    drawing with the shortest rope.
+    drawing with the shortest rope. Pieces of a split link come side by side.
     """
-    around = faces(diagram)
+    diagram = reduced(diagram)
+    curve = [*chain(1)] * len(diagram.begins)
+    groups = [[number] for number, begin in enumerate(diagram.begins) if not begin]
+    for piece in pieces(diagram.far):
+        group = [number for number, begin in enumerate(diagram.begins) if begin and begin[0] in piece]
+        drawn = _lifted(_part(diagram, piece, group), seed)
+        for number, component in zip(group, drawn, strict=True):
+            curve[number] = component
+        groups.append(group)
+    right = 0.0
+    for group in groups if len(groups) > 1 else ():
+        left = min(curve[number][:, 0].min() for number in group)
+        for number in group:
+            curve[number] = curve[number] + [right - left, 0, 0]
+        right = max(curve[number][:, 0].max() for number in group) + APART
+    return curve
+
+
+def _part(diagram: Diagram, piece: Sequence[int], group: Sequence[int]) -> Diagram:
+    """Return a piece of a diagram, which has these components."""
+    far = {slot: other for slot, other in diagram.far.items() if slot[0] in piece}
+    return Diagram(far, [diagram.begins[number] for number in group])
+
+
+def _lifted(diagram: Diagram, seed: int) -> Components:
+    """Return the curve of a diagram that is neither split nor has a nugatory crossing."""
+    around = faces(diagram.far)
+    crossing, edge = _points(diagram)
     drawings = []
-    for outer in (np.arange(len(around)) + seed % len(around)) % len(around):
-        lines, boundary = _triangulated(diagram, around, int(outer))
+    for outer in ((np.arange(len(around)) + seed % len(around)) % len(around))[:TRIES]:
+        lines, boundary = _triangulated(crossing, edge, around, int(outer))
         points = _drawn(lines, boundary, np.random.default_rng(seed))
         lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
-        curve = _raised(diagram, points / lengths.min())
-        drawings.append((measure([curve]).l_p, curve))
+        points /= lengths.min()
+        curve = [
+            _raised([(crossing[slot[0]], edge[slot], slot[1] % 2) for slot in entered], points)
+            for entered in diagram.circuits()
+        ]
+        drawings.append((measure(curve).l_p, curve))
         if lengths.max() < UNEVEN * lengths.min() and drawings[-1][0] < LONGEST:
-            return [curve]
-    return [min(drawings, key=lambda drawing: drawing[0])[1]]
+            return curve
+    return min(drawings, key=lambda drawing: drawing[0])[1]
 
 
-def _raised(diagram: Diagram, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the knot (n, 3) above a drawing of its diagram."""
+def _points(diagram: Diagram) -> tuple[dict[int, int], dict[Slot, int]]:
+    """Number the crossings, and then the edges along the components, by the slots at both ends."""
+    crossing = {number: point for point, number in enumerate(sorted({x for x, _ in diagram.far}))}
+    edge: dict[Slot, int] = {}
+    for slot in (slot for circuit in diagram.circuits() for slot in circuit):
+        edge[slot] = edge[diagram.far[slot]] = len(crossing) + len(edge) // 2
+    return crossing, edge
+
+
+def _raised(passages: Sequence[tuple[int, int, int]], points: Floats) -> Floats:
+    """Return the component (n, 3) above a drawing: its crossings, the edges into them, and if it is over."""
     corners = []
-    for edge in range(1, 2 * len(diagram) + 1):
-        crossing = _left_by(diagram, edge)
-        z = -1 if diagram[crossing][0] == edge else 1
-        corners += [[*points[len(diagram) + edge - 1], 0], [*points[crossing], z]]
+    for crossing, edge, over in passages:
+        corners += [[*points[edge], 0], [*points[crossing], 2 * over - 1]]
     return divided(np.array(corners, float), 0.6)
 
 
-def _left_by(diagram: Diagram, edge: int) -> int:
-    """Return the crossing that an edge leads to: where the slot across is that of the next edge."""
-    after = edge % (2 * len(diagram)) + 1
-    for crossing, slots in enumerate(diagram):
-        if any((slots[k], slots[k - 2]) == (edge, after) for k in range(4)):
-            return crossing
-    raise ValueError(f"a planar diagram in which edge {edge} does not lead on to {after}")
-
-
-def across(diagram: Diagram) -> dict[Slot, Slot]:
-    """Return the slot at the other end of the edge in each slot."""
-    ends: dict[int, list[Slot]] = {}
-    for crossing, edges in enumerate(diagram):
-        for slot, edge in enumerate(edges):
-            ends.setdefault(edge, []).append((crossing, slot))
-    return {slot: other for one, two in ends.values() for slot, other in ((one, two), (two, one))}
-
-
-def faces(diagram: Diagram) -> list[list[Slot]]:
-    """Return the slots from which edges have each face to their left, those of the largest face first."""
-    far = across(diagram)
-    unseen = set(far)
-    found = []
-    while unseen:
-        slot = min(unseen)
-        face = []
-        while slot in unseen:
-            unseen.remove(slot)
-            face.append(slot)
-            # Along the edge to its other end; the face goes on at the slot clockwise from there.
-            crossing, end = far[slot]
-            slot = crossing, (end - 1) % 4
-        found.append(face)
-    return sorted(found, key=len, reverse=True)
-
-
 def _triangulated(
-    diagram: Diagram, around: Sequence[Sequence[Slot]], outer: int
+    crossing: dict[int, int], edge: dict[Slot, int], around: Sequence[Sequence[Slot]], outer: int
 ) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     """Return the lines (m, 2) of the triangulation, and the points round the outer face, clockwise.
 
     Points are the crossings, then the middles of edges, then those amid faces.
     """
-    crossings = len(diagram)
-    lines = [(x, crossings + edge - 1) for x, slots in enumerate(diagram) for edge in slots]
+    lines = [(crossing[slot[0]], edge[slot]) for slot in sorted(edge)]
     boundary: list[int] = []
     for number, face in enumerate(around):
-        circuit = [point for x, slot in face for point in (x, crossings + diagram[x][slot] - 1)]
+        circuit = [point for slot in face for point in (crossing[slot[0]], edge[slot])]
         if number == outer:
             boundary = circuit
         else:
-            lines += [(3 * crossings + number - (number > outer), point) for point in circuit]
+            lines += [(3 * len(crossing) + number - (number > outer), point) for point in circuit]
     return np.array(lines), np.array(boundary[::-1])
 
 
-def _drawn(
-    lines: NDArray[np.int_], boundary: NDArray[np.int_], random: np.random.Generator
-) -> NDArray[np.float64]:
+def _drawn(lines: NDArray[np.int_], boundary: NDArray[np.int_], random: np.random.Generator) -> Floats:
     """Return the points (n, 2) of the drawing in which the longest line is least in terms of the shortest."""
     count = lines.max() + 1
     angle = 2 * np.pi * np.arange(len(boundary)) / len(boundary)

@@ -18,13 +18,17 @@ TURNS = 1000
 """Directions that are tried for one from which the first component is farthest out."""
 
 
+class EnclosedError(ValueError):
+    """A link that cannot be joined to another as it is drawn."""
+
+
 def joined(one: Components, other: Components, seed: int = 0) -> Components:
     """Return the connected sum of two curves, at the first component of each, in a rope's units.
 
     Each summand is turned to a random direction, by the seed, such that its first component is farthest out
     towards the other; the vertex where it is so is opened to two strands. Nothing of either curve lies
     between the two, so the strands may be drawn straight, and both keep their orientations. The sum is the
-    first component; those of `one` come next. Raises `ValueError` where other components are all around.
+    first component; those of `one` come next. Raises `EnclosedError` where other components are all around.
     """
     random = np.random.default_rng(seed)
     (one, a), (other, b) = _turned(one, 1, random), _turned(other, -1, random)
@@ -43,7 +47,7 @@ def _turned(curve: Components, side: int, random: np.random.Generator) -> tuple[
         reach = [(side * component[:, 0]).max() for component in turned]
         if np.argmax(reach) == 0:
             return turned, int(np.argmax(side * turned[0][:, 0]))
-    raise ValueError("the first component is inside of others, where nothing can be joined to it")
+    raise EnclosedError("the first component is inside of others, where nothing can be joined to it")
 
 
 def _opened(component: NDArray[np.float64], vertex: int) -> NDArray[np.float64]:

@@ -18,9 +18,10 @@ def read(source: str) -> list[Row]:
 
     Raises `FormatError` naming file and line.
     """
-    from sono.formats import load  # here, since numpy would make --help wait
+    from sono.formats import decoded, load  # here, since numpy would make --help wait
 
-    name, text = load(source)
+    name, data = load(source)
+    text = decoded(name, data)
     return list(_of_json(name, text) if text.lstrip()[:1] in ("{", "[") else _of_cells(name, text))
 
 

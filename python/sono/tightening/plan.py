@@ -3,20 +3,19 @@
 First a shape is found: the stages of several trials are "collapse", "anneal" and "trial". From the best shape
 "climb" rungs, each with twice the vertices of the one before, lead to the last, a "polish". With the method
 "sono" one curve is collapsed, and rungs "anneal", "reanneal" and "settle" of SONO come in place of the
-polished ones; with "polish" there is no shape to be found.
+polished ones; with "polish" there is no shape to be found, nor where one is known.
 """
 
 import json
-import math
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self, TypeVar, cast
 
 from sono._core import Polish, Tightener
 from sono.curve import Components, Measures, measure, packed, unpacked
 from sono.tightening.engines import Engine, status_of
-from sono.tightening.settings import TRIALS, Method, default_settings, of_polish, of_sono
-from sono.tightening.targets import COARSE, Target, aimed, coarsest
-from sono.tightening.trial import HOT, Recipe, Trial
+from sono.tightening.settings import TRIALS, Method, of_polish, of_sono
+from sono.tightening.targets import COARSE, Target, aimed, coarsest, doubled
+from sono.tightening.trial import Recipe, Trial
 
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 
@@ -43,6 +42,13 @@ HOPELESS = 1.3
 """A run whose first trial needs so many times the vertices asked for makes no other: what trials from one
 curve need differs by a few percent as a rule, and by a sixth at most as far as is known."""
 
+KNOWN = 0.5
+"""A rope whose edges are at most so long, in radii, is polished from a shape that is known; for one of longer
+edges other shapes may be better."""
+
+GROOVED = 0.1
+"""Beads with edges longer than this, in radii, lie in grooves between those that they touch, which may hold
+the rope up by a ten-thousandth of its length; shorter ones by a hundred-thousandth at most."""
 
 CLIMBS = 3
 """Climbs that are made once more for a target that is an edge length."""
@@ -55,7 +61,8 @@ class Plan:
     `curve` is what the next rung begins with, and `start` the curve of all trials, which may have been
     `loosened`. While a shape is looked for there is a `trial`, and `rungs` are empty. `shape` is the best of
     those found; `shapes` has the length of each, and `failed` says why other trials came to nothing. `climbs`
-    counts those that were made once more for the sake of the edges.
+    counts those that were made once more for the sake of the edges. `known` is a shape of radius 1 to climb
+    from instead, where edges are short enough for it, and `from_known` tells that the rope comes from there.
     """
 
     targets: list[Target]
@@ -71,12 +78,16 @@ class Plan:
     shapes: list[float] = field(default_factory=list)
     failed: list[str] = field(default_factory=list)
     climbs: int = 0
+    known: Components | None = None
+    from_known: bool = False
 
     def __post_init__(self) -> None:
         """Begin with the first trial, or with the climb."""
         self.start = self.start or self.curve
         if self.targets and not (self.trial or self.rungs):
-            if self.method == "polish":
+            if self._knows_enough():
+                self._climb_from_known()
+            elif self.method == "polish":
                 self._climb()
             else:
                 self._try_again()
@@ -171,6 +182,10 @@ class Plan:
 
     def fail(self, error: Error, needed: float) -> None:
         """Do without the trial that failed, and would have `needed` so many vertices; or raise its error."""
+        if self.from_known:
+            self.known, self.from_known = None, False
+            self._try_again()
+            return
         hopeless = not self.shapes and needed > HOPELESS * self.n
         if self.method != "both" or not self.trial or hopeless:
             raise error
@@ -187,7 +202,9 @@ class Plan:
             return
         measures = measure(self.curve)
         edge = measures.l_p / (measures.n * measures.r_s)
-        if self.method == "sono" and self.shape:
+        if self._knows_enough() and not (self.from_known and reached):
+            self._climb_from_known()
+        elif self.method == "sono" and self.shape:
             if reached and edge < FINE:
                 self._climb()
             else:
@@ -201,6 +218,24 @@ class Plan:
             self.shape, self.shapes, self.failed = None, [], []
             self._try_again()
 
+    def _knows_enough(self) -> bool:
+        """Tell whether a shape is known that suits edges as short as those of the first target."""
+        if self.known is None or self.method != "both":
+            return False
+        length = measure(self.known).l_p
+        return length <= KNOWN * aimed(self.targets[0], length)
+
+    def _climb_from_known(self) -> None:
+        """Plan the climb from the shape that is known."""
+        assert self.known is not None
+        self.curve, self.from_known = self.known, True
+        self.shape, self.shapes, self.failed = None, [], []
+        self._climb()
+        n, length = self.rungs[-1][1], measure(self.known).l_p
+        if length > GROOVED * n:  # the grooves of the shape's beads are left by way of more of them
+            self.rungs.insert(-1, ("climb", n))
+            self.rungs.insert(-1, ("climb", 2 * n))
+
     def _next_trial(self) -> None:
         """Plan another trial, or, where there were enough, the climb from the best shape."""
         if self._enough():
@@ -211,14 +246,7 @@ class Plan:
 
     def _try_again(self) -> None:
         """Plan another trial."""
-        # Edges of other lengths find other shapes; multiples of the golden ratio spread them evenly.
-        least, most = (0.92, 1.1) if _is_hot(self.tried) else (0.6, 0.9)
-        edge = least + (most - least) * ((0.5 + self.tried // 2 * (math.sqrt(5) - 1) / 2) % 1)
-        settings = of_sono(self.settings) | {"seed": self.seed()}
-        if self.method == "both":
-            settings |= _anneal_of(self.tried, default_settings() | self.settings)
-        polish = of_polish(self.settings)
-        recipe = Recipe(settings, settings, self.seed(), edge, self.targets[0], polish=polish)
+        recipe = Recipe.numbered(self.tried, self.settings, self.targets[0], short=self.method == "both")
         self.curve, self.rungs = self.start, []
         self.trial = Trial(recipe, self.start, self.loosened)
 
@@ -242,7 +270,7 @@ class Plan:
         self.curve, length = self.shape, measure(self.shape).l_p
         n = aimed(self.targets[0], length)
         few = coarsest(n, length)
-        finer = _doubled(few, n)
+        finer = doubled(few, n)
         self.rungs = [("anneal", few), *(("reanneal", level) for level in finer[:1])]
         self.rungs += [("settle", level) for level in finer or [few]]
 
@@ -250,11 +278,11 @@ class Plan:
         """Plan the rungs from a tight rope to the first target."""
         between, last = cast("tuple[Stage, Stage]", _CLIMB[self.method])
         aim = aimed(self.targets[0], measure(self.curve).l_p)
-        *levels, n = _doubled(sum(map(len, self.curve)), aim) or [aim]
+        *levels, n = doubled(sum(map(len, self.curve)), aim) or [aim]
         self.trial, self.rungs = None, [*((between, level) for level in levels), (last, n)]
 
 
-_CURVES = ("curve", "start", "shape")
+_CURVES = ("curve", "start", "shape", "known")
 
 _CLIMB = {"both": ("climb", "polish"), "polish": ("climb", "polish"), "sono": ("settle", "settle")}
 
@@ -262,23 +290,3 @@ _CLIMB = {"both": ("climb", "polish"), "polish": ("climb", "polish"), "sono": ("
 def _rank_of_shape(measures: Measures) -> tuple[bool, bool, float]:
     """Order shapes of equal edges before others, those with an L_c before others, then by length."""
     return measures.dispersion > UNEQUAL, measures.l_a is None, measures.l_a_or_l_p
-
-
-def _is_hot(trial: int) -> bool:
-    return trial % 2 == 1
-
-
-def _anneal_of(trial: int, settings: dict[str, Any]) -> dict[str, Any]:
-    """Return the anneal of a trial: a short one, as it has to find a shape only, and every other one hot."""
-    sweeps = max(settings["anneal_sweeps"] // 10, 1)
-    tolerance = HOT if _is_hot(trial) else settings["anneal_tolerance"]
-    return {"anneal_sweeps": sweeps, "anneal_tolerance": tolerance}
-
-
-def _doubled(have: int, n: int) -> list[int]:
-    """Return the levels above `have` that lead to n by doubling."""
-    levels: list[int] = []
-    while n > have:
-        levels.insert(0, n)
-        n //= 2
-    return levels

@@ -25,8 +25,9 @@ class Tight(Record):
     reached its end: the polish a residual below 1e-8 at mu = 1e-11, SONO the dispersion and overlaps that the
     settings ask for, as they may ask for another mu. `shapes` has the L_a of each trial's shape, all at the
     same coarse n, and `failed` says why other trials came to nothing. `loosened` tells that the curve, as it
-    was given, held only a thin rope, and was first loosened by isotopic moves. `sweeps`, `factorisations` and
-    `seconds` count from the start of the run.
+    was given, held only a thin rope, and was first loosened by isotopic moves. `known` tells that the rope
+    was polished from a shape that was known, without trials. `sweeps`, `factorisations` and `seconds` count
+    from the start of the run.
 
     Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
     those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
@@ -53,6 +54,7 @@ class Tight(Record):
     mu: float | None = None
     excess: float | None = None
     forces: Forces | None = None
+    known: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values: what the rope measures first, among the other fields."""

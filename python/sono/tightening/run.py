@@ -17,7 +17,7 @@ from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.patience import patiently, within
 from sono.tightening.coarser import coarser, unit
 from sono.tightening.engines import Engine, Seen, Status, advanced, as_seen, rank, restored, saved, status_of
-from sono.tightening.plan import Plan
+from sono.tightening.plan import GROOVED, Plan
 from sono.tightening.results import KnotTypeError, Progress, Tight
 from sono.tightening.settings import TRIALS, Method, check_settings
 from sono.tightening.targets import Target, check, coarse_first
@@ -26,8 +26,8 @@ Done = TypeVar("Done")
 
 OFFSETS = 3
 OFFSETS_TO = 1000
-"""Offsets along the rope from which the last n is refined, up to this n: beads settle in other grooves each
-time, which matters less the finer they are. Above it the others are tried where one did not get tight."""
+"""Offsets along the rope from which the last n is refined, up to this n, where edges are `GROOVED`: beads
+settle in other grooves each time. Else the others are tried where one did not get tight."""
 
 COMPARED = 60_000
 MOMENT = 0.3
@@ -51,15 +51,17 @@ class Run:
         settings: dict[str, Any],
         method: Method = "both",
         trials: int = TRIALS,
+        known: Components | None = None,
     ) -> None:
         """Plan to tighten any embedded closed curve, at any scale, to each target, coarse ones first.
 
-        An int n counts the vertices of all components together, a float is an edge length in radii. Raises
+        An int n counts the vertices of all components together, a float is an edge length in radii. A rope of
+        radius 1 and the same type that is `known` takes the place of trials where it suits. Raises
         `ValueError` for a wrong target, method or setting.
         """
         check(curve, targets, method, trials)
         check_settings(settings)
-        self.plan = Plan(coarse_first(targets), settings, method, trials, curve)
+        self.plan = Plan(coarse_first(targets), settings, method, trials, curve, known=known)
         self.type: Fingerprint | None = None
         self.engine: Engine | None = None
         self.rival: Polish | None = None
@@ -87,7 +89,7 @@ class Run:
         look = partial(self._look, watch)
         if self.type is None:
             with suppress(TooEntangledError):  # the collapsed rope is less so, as a rule
-                self.type = patiently(partial(fingerprint, self.plan.curve), look)
+                self.type = patiently(partial(fingerprint, self.plan.start), look)
         while True:
             try:
                 self._work(look)
@@ -223,9 +225,9 @@ class Run:
         """Tell whether the last rung has been tried from enough offsets along the rope."""
         if not isinstance(self.engine, Polish):
             return True
-        stuck = status_of(self.engine).outcome != "tight"
-        n = self.plan.n
-        several = (n <= OFFSETS_TO or stuck) and sum(map(len, self.plan.curve)) != n
+        status, n = status_of(self.engine), self.plan.n
+        grooved = n <= OFFSETS_TO and status.best.dl > GROOVED
+        several = (grooved or status.outcome != "tight") and sum(map(len, self.plan.curve)) != n
         return self.offset + 1 >= (OFFSETS if several else 1)
 
     def _better(self) -> Engine:
@@ -272,6 +274,7 @@ class Run:
             shapes=list(plan.shapes),
             failed=list(plan.failed),
             loosened=plan.loosened,
+            known=plan.from_known,
             sweeps=int(self.work["sweeps"] + (status.sweeps if status else 0)),
             factorisations=int(self.work["factorisations"] + (status.factorisations if status else 0)),
             seconds=self.work["seconds"],

@@ -25,6 +25,15 @@ def coarsest(n: int, length: float) -> int:
     return n
 
 
+def doubled(have: int, n: int) -> list[int]:
+    """Return the levels above `have` that lead to n by doubling."""
+    levels: list[int] = []
+    while n > have:
+        levels.insert(0, n)
+        n //= 2
+    return levels
+
+
 def coarse_first(targets: Sequence[Target]) -> list[Target]:
     """Put targets in order, each of them once."""
     return sorted(set(targets), key=lambda target: target if isinstance(target, int) else -target)

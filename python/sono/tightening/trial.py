@@ -4,12 +4,14 @@ Runs and searches share it; a `Recipe` says in what their trials differ.
 """
 
 import json
+import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from sono._core import Collapse, CurveError, Polish, Tightener
 from sono.curve import Components
 from sono.tightening.engines import Engine, status_of
+from sono.tightening.settings import default_settings, of_polish, of_sono
 from sono.tightening.targets import Target, aimed, coarsest
 
 TRIAL_EDGE = 0.45
@@ -35,6 +37,21 @@ class Recipe:
     edge: float
     target: Target | None = None
     polish: str = "{}"
+
+    @classmethod
+    def numbered(cls, number: int, settings: dict[str, Any], target: Target, short: bool) -> Self:
+        """Return the recipe of a run's trial, from 0. A `short` anneal has to find a shape only."""
+        hot = number % 2 == 1
+        # Edges of other lengths find other shapes; multiples of the golden ratio spread them evenly.
+        least, most = (0.92, 1.1) if hot else (0.6, 0.9)
+        edge = least + (most - least) * ((0.5 + number // 2 * (math.sqrt(5) - 1) / 2) % 1)
+        seed = (settings.get("seed", 0) + number) % 2**64
+        all_settings = default_settings() | settings
+        changes = of_sono(settings) | {"seed": seed}
+        if short:
+            changes["anneal_sweeps"] = max(all_settings["anneal_sweeps"] // 10, 1)
+            changes["anneal_tolerance"] = HOT if hot else all_settings["anneal_tolerance"]
+        return cls(changes, changes, seed, edge, target, polish=of_polish(settings))
 
 
 @dataclass

@@ -1,0 +1,212 @@
+"""Backbones of proteins and nucleic acids, as PDB and mmCIF files hold them, and models made of beads.
+
+A chain goes through its atoms CA, or P where there are none, or all atoms if the file has neither. It is
+closed if a bond joins its ends, or if they are as near as neighbours. When all chains are closed, those of a
+model are the components of one curve, a link perhaps, with the model as the key. When some are open, as those
+of proteins are, every chain is a curve of its own, with the chain as the key, such as A, or 2:A in model 2.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from sono.formats.boxes import second_chain
+from sono.formats.doubts import LONGEST, closing_edge
+from sono.formats.refused import attempted
+from sono.formats.vertices import SHOWN, Chain, FormatError, Raw
+
+BACKBONE = ({"N", "C"}, {"P", "O3'"})
+"""Atoms whose bond joins two residues, other than those that a chain goes through."""
+
+CA_TO_CA = 4.2
+"""Neighbours along a protein are nearer than so many ångströms; where they are not, some may be missing."""
+
+NO_BOND = "no CONECT joins this atom"
+
+Bonds = set[frozenset[int]]
+
+
+@dataclass(frozen=True)
+class Atom:
+    """An atom: its `name`, its `residue`, the `chain` that it is in, after how many breaks (`part`).
+
+    The `number` of the residue includes its insertion code; `other` marks an alternative place.
+    """
+
+    hetero: bool
+    name: str
+    other: str
+    residue: str
+    chain: str
+    part: int
+    number: str
+    place: tuple[float, float, float]
+    line: int
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model: its atoms, and the bonds between them as pairs of places in that list."""
+
+    key: str
+    atoms: Sequence[Atom]
+    bonds: Bonds
+
+
+@np.errstate(all="ignore")  # what is not finite is refused later on
+def curves(models: Sequence[Model], name: str) -> list[Raw]:
+    """Give the curves of all models of the file `name`, at least one.
+
+    A chain that is wrong spoils no open one: its error is raised by its chains.
+    """
+    traces = [_traces(model, name) for model in models]
+    links = all(trace.closed for several in traces for trace in several)
+    found: list[Raw] = []
+    for model, several in zip(models, traces, strict=True):
+        if links:
+            found.append(attempted(partial(_link, several, model.key), model.key))
+            continue
+        for chain, trace in zip(_keys(several), several, strict=True):
+            key = f"{model.key}:{chain}" if len(models) > 1 else chain
+            found.append(attempted(partial(_link, [trace], key), key))
+    return found if len(found) > 1 else [replace(found[0], key="")]
+
+
+def _link(traces: Sequence["_Trace"], key: str) -> Raw:
+    notes = [note for trace in traces for note in trace.notes()]
+    return Raw([trace.chain() for trace in traces], key, notes)
+
+
+def _keys(traces: Sequence["_Trace"]) -> list[str]:
+    """Name chains by their ids, or by numbers where they have none, or not one each."""
+    ids = [trace.atoms[0].chain for trace in traces]
+    plain = all(ids) and len(set(ids)) == len(ids)
+    return ids if plain else [str(number) for number in range(1, len(ids) + 1)]
+
+
+def _traces(model: Model, name: str) -> list["_Trace"]:
+    strands: dict[tuple[str, int], list[int]] = {}
+    for index, atom in enumerate(model.atoms):
+        strands.setdefault((atom.chain, atom.part), []).append(index)
+    hetero = all(atom.hetero for atom in model.atoms)
+    found = [pair for strand in strands.values() if (pair := _backbone(strand, model.atoms, hetero))]
+    found = found or [("", strand) for strand in strands.values()]
+    long = [pair for pair in found if len(pair[1]) > 2] or found[:1]
+    return [_Trace(name, model, called, places) for called, places in long]
+
+
+def _backbone(strand: Sequence[int], atoms: Sequence[Atom], hetero: bool) -> tuple[str, list[int]] | None:
+    """Give the name and the places of the atoms that a strand goes through, or None if it has no backbone."""
+    if all(atoms[i].hetero for i in strand) and not hetero:  # water, or what else stands beside the chains
+        return None
+    for called in ("CA", "P"):
+        # A residue that is called CA is an ion of calcium.
+        places = [i for i in strand if atoms[i].name == called != atoms[i].residue]
+        if places:
+            return called, _first_places(places, atoms)
+    return None
+
+
+def _first_places(places: Sequence[int], atoms: Sequence[Atom]) -> list[int]:
+    """Leave out the other places of an atom that has several."""
+    kept = [places[0]]
+    for place in places[1:]:
+        if not (atoms[place].other and atoms[place].number == atoms[kept[-1]].number):
+            kept.append(place)
+    return kept
+
+
+class _Trace:
+    """A chain through some atoms of a model, all of the name `called`, or of any when that is empty."""
+
+    def __init__(self, name: str, model: Model, called: str, places: Sequence[int]) -> None:
+        self._name, self._model, self._called, self._places = name, model, called, places
+        self.atoms = [model.atoms[place] for place in places]
+        self._rows = np.array([atom.place for atom in self.atoms])
+        self._lengths = np.linalg.norm(np.roll(self._rows, -1, axis=0) - self._rows, axis=1)
+        self._joined = [frozenset(pair) in model.bonds for pair in pairwise(places)]
+        self._spelled = sum(self._joined) > len(self._joined) / 2
+        self._bonded = self._ends_bonded()
+        self.closed = self._bonded or (not self._spelled and self._ends_near())
+
+    def _refuse_breaks(self) -> None:
+        """Refuse to go on where a second chain seems to begin."""
+        after, why = -1, ""
+        if self._spelled:
+            after, why = (-1, "") if all(self._joined) else (self._joined.index(False), NO_BOND)
+        elif (found := second_chain(self._rows)) and not self._jumps(found[0]):
+            after, why = found[0], f"an edge of {found[1]:.1f} times the median one leads here"
+        elif restarts := self._restarts():
+            after, why = restarts[0], "the numbers of residues start again here"
+        if why:
+            before, here = self.atoms[after : after + 2]
+            raise FormatError.at(
+                self._name,
+                here.line,
+                f"{why}, from line {before.line}; put TER ahead of a second chain, or unwrap the first",
+            )
+
+    def _jumps(self, edge: int) -> bool:
+        """Tell whether residues were left out between the ends of an edge, by their numbers."""
+        before, after = (_number(atom) for atom in self.atoms[edge : edge + 2])
+        return before is not None and after is not None and after > before + 1
+
+    def _restarts(self) -> list[int]:
+        """Give the edges that are rather long and after which the numbers of residues are lower."""
+        far = self._lengths[:-1] > LONGEST * np.median(self._lengths)
+        numbers = [_number(atom) for atom in self.atoms]
+        pairs = [(i, numbers[i], numbers[i + 1]) for i in np.flatnonzero(far).tolist()]
+        return [
+            i for i, before, after in pairs if before is not None and after is not None and after < before
+        ]
+
+    def _ends_bonded(self) -> bool:
+        first, last = self._places[0], self._places[-1]
+        if len(self._places) > 2 and frozenset((first, last)) in self._model.bonds:
+            return True
+        ends = {(self.atoms[i].chain, self.atoms[i].number) for i in (0, -1)}
+        for bond in self._model.bonds if self._called else ():
+            pair = [self._model.atoms[place] for place in bond]
+            if {atom.name for atom in pair} in BACKBONE and {(a.chain, a.number) for a in pair} == ends:
+                return True
+        return False
+
+    def _ends_near(self) -> bool:
+        if not self._called:
+            return not closing_edge(self._rows)
+        usual = np.quantile(self._lengths[:-1], 0.9) if len(self._lengths) > 2 else np.inf
+        return bool(self._lengths[-1] <= LONGEST * usual)
+
+    def chain(self) -> Chain:
+        """Give the chain. Raises `FormatError` where a second one seems to begin."""
+        self._refuse_breaks()
+        return Chain(self._rows, [atom.line for atom in self.atoms], self.closed)
+
+    def notes(self) -> list[str]:
+        """Tell which atoms were taken, why the chain is closed, and which may be missing."""
+        where = f"{self._name}:{self.atoms[0].line}: chain {self.atoms[0].chain}".rstrip()
+        notes = []
+        if not self._called:
+            notes = [f"{where} goes through all its atoms, as none is called CA or P"]
+        elif any(atom.name != self._called for atom in self._model.atoms):
+            notes = [f"{where} goes through the atoms {self._called}"]
+        if self.closed and not self._bonded and self._called:
+            notes.append(f"{where} is closed, as its ends are as near as neighbours; no bond says so")
+        if missing := self._missing():
+            listed = ", ".join(missing[:SHOWN]) + (" and so on" if len(missing) > SHOWN else "")
+            notes.append(f"{where} goes straight where residues seem to be missing: {listed}")
+        return notes
+
+    def _missing(self) -> list[str]:
+        far = self._lengths[:-1] > max(CA_TO_CA, 1.1 * np.median(self._lengths))
+        pairs = [self.atoms[i : i + 2] for i in np.flatnonzero(far).tolist() if self._jumps(i)]
+        gaps = [((_number(before) or 0) + 1, (_number(after) or 0) - 1) for before, after in pairs]
+        return [f"{first} to {last}" if last > first else f"{first}" for first, last in gaps]
+
+
+def _number(atom: Atom) -> int | None:
+    digits = atom.number.rstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
+    return int(digits) if digits.removeprefix("-").isdecimal() else None
