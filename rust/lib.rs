@@ -4,7 +4,8 @@
 //! the polish -> tight curve** the other. The radius of a rope is R = 1, and ropelength is length over
 //! radius. Dependencies point one way only:
 //! `error <- geometry <- measures, invariants, beads, outcome <- resample, loosening <- sono, polish <- python`.
-//! `sono` and `polish` do not know each other; only `python` knows of Python.
+//! `sono` and `polish` do not know each other; only `python` knows of Python. `diagrams` of knots know of
+//! no curves.
 
 pub mod beads;
 pub mod diagrams;

@@ -49,7 +49,7 @@ def test_pd_codes(curves: Path, sono: Sono) -> None:
     assert sorted(edge for code in trefoil for edge in code) == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6]
     loud = sono("identify", "--pd", "unknot.txt")
     assert loud.stdout == "[]\n"
-    assert "sono: unknot.txt: there are no crossings, and so nothing in the PD code" in loud.stderr
+    assert "sono: unknot.txt: 1 of 1 components have no crossings, and no trace here" in loud.stderr
 
 
 def test_standard_input(folder: Path, sono: Sono) -> None:

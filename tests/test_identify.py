@@ -61,12 +61,19 @@ def test_sums_are_named_by_their_parts(name: str) -> None:
     assert (found.name, found.proven) == (SUMS[name], True)
 
 
+@pytest.mark.parametrize("name", ["L8a21{1,0,0}", "L9a53{0,1}", "L9n20{0,0}", "L9n27{0,1}"])
+def test_variants_of_links_are_oriented_like_the_first(name: str) -> None:
+    """These share linking numbers, signatures and HOMFLY polynomials with other orientations."""
+    assert {identify(start(name, variant)).names for variant in (0, 1, 18)} == {(name,)}
+
+
 def test_parts_that_are_apart() -> None:
     trefoil, circle, rings = start("3_1"), start("unknot"), start("Hopf")
     apart = [*trefoil, circle[0] + 50, *(ring + 100 for ring in rings), circle[0] - 50]
     found = identify(apart)
     assert (found.name, found.components, found.determinant) == ("0_1+0_1+L2a1{1}+3_1", 5, 0)
     assert found.linking == (0, 0, 0, 0, 0, 0, 0, 1, 0, 0)
+    assert found.circles == 2
     # A link under which another one lies is not linked with it either.
     over = [component * (1, 1, 0.2) + (0.3, 0.1, 40) for component in start("4_1")]
     assert identify([*trefoil, *over]).name == "3_1+4_1"

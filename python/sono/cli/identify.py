@@ -86,6 +86,7 @@ def row(name: str, found: "Identity") -> tables.Row:
 def _write_pd(name: str, found: "Identity", shown: options.Shown) -> None:
     """Write a PD code as KnotInfo does, on a line."""
     sys.stdout.write(str([list(code) for code in found.pd]).replace(" ", "") + "\n")
-    crossed = {edge for code in found.pd for edge in code}
-    if not crossed:
-        shown.tell(f"{name}: there are no crossings, and so nothing in the PD code")
+    if found.circles:
+        shown.tell(
+            f"{name}: {found.circles} of {found.components} components have no crossings, and no trace here"
+        )

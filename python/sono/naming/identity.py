@@ -5,8 +5,6 @@
 ('3_1#4_1', True)
 """
 
-import cmath
-import math
 import re
 from dataclasses import dataclass
 from itertools import islice, product
@@ -14,31 +12,21 @@ from typing import Literal
 
 import numpy as np
 
-from sono import _core
 from sono.curve import Components
 from sono.invariants.crossings import diagram, linking_matrix, planar_diagram
 from sono.invariants.diagrams import (
-    Gauss,
     Polynomial,
     alexander_polynomial,
     as_crossings,
     gauss_code,
-    homfly_polynomial,
     shortened,
     times,
     written,
 )
-from sono.invariants.identify import ORDERS
 from sono.invariants.polynomials import alexander
 from sono.invariants.signatures import signature
-from sono.naming.known import Type, sharing
+from sono.naming.primes import Prime, pieces_of
 from sono.records import Record
-
-MOST_SIMPLER, MOST_PROOF = 1_000, 10_000
-"""Diagrams that are looked at, for one with fewer crossings and for a proof; 10,000 take some 0.3 s."""
-
-MOST_CROSSINGS = 20
-"""Crossings of a part up to which one that has no name gets a second look."""
 
 MOST_NAMES = 100
 """Names of a sum, each of whose parts may have several."""
@@ -56,9 +44,10 @@ class Identity(Record):
     polynomial takes too long.
 
     `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
-    the incoming lower one. `crossings` counts its crossings. `linking` has the linking numbers of all pairs
-    of components; `homfly`, in Regina's alpha and z, and `alexander`, of a single variable, are None where
-    they would take too long.
+    the incoming lower one. It has so many `crossings`, and no trace of the `circles` that have none.
+
+    `linking` has the linking numbers of all pairs of components; `homfly`, in Regina's alpha and z, and
+    `alexander`, of a single variable, are None where they would take too long.
 
     >>> import sono
     >>> found = sono.identify(sono.start("3_1", variant=7))
@@ -70,6 +59,7 @@ class Identity(Record):
     known: Literal["proven", "invariants", "not in the table", "undecided"]
     components: int
     crossings: int
+    circles: int
     determinant: int
     signature: int
     linking: tuple[int, ...]
@@ -95,7 +85,7 @@ def identify(curve: Components) -> Identity:
     the table's diagrams of them.
     """
     gauss = shortened(gauss_code(diagram(curve)))
-    pieces = _pieces(gauss)
+    pieces = pieces_of(gauss)
     if len(curve) == 1 and len(pieces[0]) == 1:
         gauss = pieces[0][0].diagram
     found = as_crossings(gauss)
@@ -106,6 +96,7 @@ def identify(curve: Components) -> Identity:
         known=_how([prime for piece in pieces for prime in piece]),
         components=len(curve),
         crossings=len(found.sign),
+        circles=gauss[0].count([]),
         determinant=round(alexander(found, -1)),
         signature=signature(found, -1),
         linking=tuple(linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()),
@@ -115,48 +106,13 @@ def identify(curve: Components) -> Identity:
     )
 
 
-@dataclass(frozen=True)
-class _Prime:
-    """A prime part: its smallest diagram, names, whether one is proven, and HOMFLY polynomial, if known.
-
-    It `is_new` where the table cannot have it.
-    """
-
-    diagram: Gauss
-    is_new: bool
-    polynomial: Polynomial | None
-    names: list[str]
-    proven: bool
-
-
-def _how(primes: list[_Prime]) -> Literal["proven", "invariants", "not in the table", "undecided"]:
+def _how(primes: list[Prime]) -> Literal["proven", "invariants", "not in the table", "undecided"]:
     """Tell how these parts are known."""
     if all(prime.proven for prime in primes):
         return "proven"
     if all(prime.names for prime in primes):
         return "invariants"
     return "not in the table" if any(prime.is_new for prime in primes) else "undecided"
-
-
-def _pieces(gauss: Gauss) -> list[list[_Prime]]:
-    """Return the prime parts of each piece that is apart."""
-    pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_SIMPLER)]
-    unknown = [len(prime.diagram[1]) for piece in pieces for prime in piece if not prime.names]
-    if unknown and max(unknown) <= MOST_CROSSINGS:
-        pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_PROOF)]
-    return pieces
-
-
-def _known(prime: Gauss) -> _Prime:
-    polynomial = homfly_polynomial(prime)
-    types = sharing(polynomial) if polynomial else []
-    at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
-    if at is not None:
-        smallest = min(prime, types[at].diagram, key=lambda gauss: len(gauss[1]))
-        return _Prime(smallest, False, polynomial, [types[at].name], True)
-    names = [type.name for type in types if _may_be(prime, type)]
-    is_new = not names and (polynomial is not None or _is_alternating(prime))
-    return _Prime(prime, is_new, polynomial, names, False)
 
 
 def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
@@ -169,7 +125,7 @@ def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _polynomial(pieces: list[list[_Prime]]) -> Polynomial | None:
+def _polynomial(pieces: list[list[Prime]]) -> Polynomial | None:
     """Return the HOMFLY polynomial of the whole, if it is known."""
     factors = [prime.polynomial for piece in pieces for prime in piece]
     factors += [{(1, -1): 1, (-1, -1): -1}] * (len(pieces) - 1)
@@ -184,27 +140,3 @@ def _polynomial(pieces: list[list[_Prime]]) -> Polynomial | None:
 def _order(name: str) -> tuple[list[int], str]:
     """Return by what names are sorted: crossings and numbers first."""
     return [int(number) for number in re.findall(r"\d+", name)], name
-
-
-def _may_be(prime: Gauss, type: Type) -> bool:
-    """Tell whether crossing numbers and signatures agree.
-
-    A reduced alternating diagram has as few crossings as there can be (L. Kauffman, K. Murasugi,
-    M. Thistlethwaite, 1987).
-    """
-    crossings = len(prime[1])
-    alternating = _is_alternating(prime)
-    if type.crossings > crossings or alternating != (
-        _is_alternating(type.diagram) and type.crossings == crossings
-    ):
-        return False
-    one, other = as_crossings(prime), as_crossings(type.diagram)
-    roots = [cmath.exp(2j * math.pi / k) for k in ORDERS]
-    return all(signature(one, t) == signature(other, t) for t in roots)
-
-
-def _is_alternating(gauss: Gauss) -> bool:
-    def alternates(along: list[int]) -> bool:
-        return all((one > 0) != (other > 0) for one, other in zip(along, along[1:] + along[:1], strict=True))
-
-    return all(map(alternates, gauss[0]))

@@ -1,6 +1,6 @@
 """Every conformation that has a name: knots of the tables, torus types, chains, braids, and their variants.
 
-May import `curve` and `invariants`.
+May import `curve`, `invariants` and `naming`.
 """
 
 from sono.starts.names import has_variants, knows, names, start

@@ -17,6 +17,7 @@ import numpy as np
 from sono.curve import Components
 from sono.invariants import fingerprint
 from sono.invariants.crossings import diagram, linking_matrix
+from sono.naming import identify
 from sono.starts.tables import table
 
 HOPF = "L2a1{1}"
@@ -57,7 +58,7 @@ def link_row(name: str) -> dict[str, str] | None:
 def oriented_like(curve: Components, model: Components) -> Components:
     """Return a link with its components in such an order, and so oriented, that its type is the model's.
 
-    The type is compared by `fingerprint`. Raises `ValueError` if it is another link.
+    The type is compared by `fingerprint`, and by name. Raises `ValueError` if it is another link.
     """
     # To turn all components round changes nothing.
     return _like(curve, model, [(1, *turns) for turns in product((1, -1), repeat=len(curve) - 1)])
@@ -70,12 +71,13 @@ def ordered_like(curve: Components, model: Components) -> Components:
 
 def _like(curve: Components, model: Components, orientations: list[tuple[int, ...]]) -> Components:
     """Return the components in an order, and one of these orientations, of the type of the model."""
-    wanted = fingerprint(model)
+    wanted, names = fingerprint(model), identify(model).names
     linking, pairs = linking_matrix(diagram(curve)), np.triu_indices(len(curve), 1)
     for order, turns in product(permutations(range(len(curve))), orientations):
         if tuple((linking[np.ix_(order, order)] * np.outer(turns, turns))[pairs].tolist()) == wanted[0]:
             candidate = [curve[number][::turn] for number, turn in zip(order, turns, strict=True)]
-            if fingerprint(candidate) == wanted:
+            # Invariants are not enough: two orientations of L9n27 share them all.
+            if fingerprint(candidate) == wanted and identify(candidate).names == names:
                 return candidate
     raise ValueError("this is another link than the model")
 
