@@ -70,7 +70,7 @@ def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[st
 
 
 def names() -> list[str]:
-    """Return the names that are built in; others are torus types "T(p,q)", "chain4" and braid words.
+    """Return the names that are built in; others are torus types "T(p,q)", pretzels "P(p,q,r)", codes and more.
 
     >>> names()[:3], "Hopf" in names()
     (['3_1', '4_1', '5_1'], True)
@@ -81,11 +81,12 @@ def names() -> list[str]:
 def start(name: str, variant: int = 0) -> Curve:
     """Return a loose conformation of the knot of this name, in units of about one rope radius.
 
-    Each `variant` is another conformation of the same type: see `sono start --help`. Raises `ValueError`,
-    with the nearest known name, for one that is not known.
+    A name may be a code, such as "pd:[(1,5,2,4),(3,1,4,6),(5,3,6,2)]", "dt:4 6 2" or "gauss:1 -2 3 -1 2 -3";
+    docs/names.md has all kinds. Each `variant` is another conformation of the same type, drawn from a planar
+    diagram if it is negative. Raises `ValueError`, with the nearest known name, for one that is not known.
 
-    >>> start("3_1"), len(start("Hopf"))
-    (Curve(69 vertices), 2)
+    >>> start("3_1"), len(start("Hopf")), len(start("P(-2,3,7)")), len(start("gauss:1 -2 | 2 -1"))
+    (Curve(69 vertices), 2, 1, 2)
     """
     if not isinstance(name, str):
         raise ValueError(f"{name!r} is no name of a knot")
