@@ -70,7 +70,7 @@ def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[st
 
 
 def names() -> list[str]:
-    """Return the names that are built in; others are torus types "T(p,q)", pretzels "P(p,q,r)", codes and more.
+    """Return the names that are built in; others are torus types "T(p,q)", codes and more: docs/names.md.
 
     >>> names()[:3], "Hopf" in names()
     (['3_1', '4_1', '5_1'], True)
