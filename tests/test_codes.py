@@ -248,6 +248,8 @@ def test_all_codes_of_linkinfo_are_those_of_its_braids() -> None:
         ("gauss:1 1", "crossing 1 is passed 2 times above"),
         ("gauss:O1+U2O3U1O2U3", "has no sign, or two"),
         ("gauss:O1+U1-", "has no sign, or two"),
+        ("gauss:O1+ 2 -2 U1+", "not readable"),
+        ("gauss:O1+U1+ 2 -2", "not readable"),
         ("dt:" + " ".join(str(2 * k) for k in range(1, 400)), "too many to draw"),
     ],
 )

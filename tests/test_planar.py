@@ -44,3 +44,14 @@ def test_where_every_outer_face_leaves_others_flat_the_shortest_rope_is_taken() 
 
 def test_seeds_differ() -> None:
     assert len({lifted(TREFOIL, seed)[0].tobytes() for seed in range(15)}) == 15
+
+
+def test_long_rows_of_twists_are_made_even() -> None:
+    # By Tutte's method alone the drawing of the most even lines is 5,300 and 270,000 radii long.
+    assert measure(start("P(5,-7,9)")).l_p < 3000
+    assert measure(start("P(9,-11,13)")).l_p < 10_000
+
+
+def test_what_rounding_would_spoil_is_refused() -> None:
+    with pytest.raises(ValueError, match="cannot be drawn with room for a rope"):
+        start("P(-30,31,33)")

@@ -34,14 +34,10 @@ def codes(function: Function) -> Function:
     """`--pd`, `--dt` and `--gauss`, as names in `codes`."""
 
     @click.option(
-        "--pd", multiple=True, metavar="CODE", help='A diagram: "X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]".'
+        "--pd", multiple=True, metavar="CODE", help='A PD code, such as "X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]".'
     )
-    @click.option(
-        "--dt", multiple=True, metavar="CODE", help='A diagram: "4 6 2", or "[[6,8],[2,4]]" of a link.'
-    )
-    @click.option(
-        "--gauss", multiple=True, metavar="CODE", help='A diagram: "1 -2 3 -1 2 -3", or "1 -2 | 2 -1".'
-    )
+    @click.option("--dt", multiple=True, metavar="CODE", help='A DT code, "4 6 2" or "[[6,8],[2,4]]".')
+    @click.option("--gauss", multiple=True, metavar="CODE", help='A Gauss code, "1 -2 3 -1 2 -3".')
     @functools.wraps(function)
     def command(pd: tuple[str, ...], dt: tuple[str, ...], gauss: tuple[str, ...], **more: object) -> object:
         given = (("pd", pd), ("dt", dt), ("gauss", gauss))
@@ -60,7 +56,7 @@ def knots(function: Function) -> Function:
         "list_file",
         metavar="FILE",
         type=click.Path(allow_dash=True, dir_okay=False, exists=True),
-        help="More files or names, one a line; # after a space or at the beginning of one begins a comment.",
+        help="More files or names, one a line; # at its beginning or after a space begins a comment.",
     )
     @click.option(
         "--shard",

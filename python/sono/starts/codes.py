@@ -109,6 +109,8 @@ def _dt(text: str) -> Diagram:
 def _gauss(text: str) -> Diagram:
     if not _PASSED.search(text):
         return embedded([[(abs(number), number > 0) for number in word] for word in _lists(text, "gauss")])
+    if re.search(r"\d", _PASSED.sub("", text)):
+        raise _malformed("gauss")
     signs: dict[int, set[str]] = {}
 
     def noted(passed: re.Match[str]) -> str:

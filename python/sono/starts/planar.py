@@ -9,13 +9,15 @@ another conformation: strands that ran inside now run round all others.
 
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sono.curve import Components, Floats, measure
 from sono.starts.diagrams import Diagram, Slot, faces, pieces, reduced
-from sono.starts.drawing import check_size, divided
+from sono.starts.drawing import divided
+from sono.starts.evening import areas, evened
 from sono.starts.torus import chain
 
 ROUNDS = 12
@@ -28,8 +30,8 @@ LONGEST = 2000
 """Ropelength up to which a drawing is taken; one in a hundred is longer. A rope in flat triangles is thin: at
 a length of 10,000 it takes ten seconds to collapse, if it does."""
 
-TRIES = 12
-"""Outer faces that are tried; a knot of 10 crossings has as many."""
+TRIES = 6
+"""Outer faces that are tried from the one on that the seed chooses, and as many of the largest."""
 
 PULL = 0.3
 """The power of its length by which a line's weight grows in a round."""
@@ -37,6 +39,12 @@ PULL = 0.3
 
 FLAT = 1e-12
 """Twice the area of a triangle, in a circle of radius 1, up to which rounding may have turned it over."""
+
+LARGEST = 50_000
+"""The length of all lines together, in radii, up to which a drawing is measured."""
+
+STEPS = 50
+"""Steps in which an uneven drawing is made even."""
 
 APART = 4.0
 """Distance of the pieces of a split link, in radii."""
@@ -46,8 +54,9 @@ def lifted(diagram: Diagram, seed: int) -> Components:
     """Return the knot or link of a planar diagram, from which nugatory crossings are removed first.
 
     The seed chooses the outer face and draws the first weights. The shortest line is 1 long, strands cross 2
-    apart, and the next face is taken instead of one that leaves the others too little room; where all do, the
-    drawing with the shortest rope. Pieces of a split link come side by side.
+    apart. A drawing that leaves some faces too little room is made even; where that does not help, the next
+    face is taken, and where none helps, the drawing with the shortest rope. Pieces of a split link come side
+    by side. Raises ValueError where no drawing has room for a rope.
     """
     diagram = reduced(diagram)
     curve = [*chain(1)] * len(diagram.begins)
@@ -77,9 +86,10 @@ def _lifted(diagram: Diagram, seed: int) -> Components:
     """Return the curve of a diagram that is neither split nor has a nugatory crossing."""
     around = faces(diagram.far)
     drawings = []
-    for outer in ((np.arange(len(around)) + seed % len(around)) % len(around))[:TRIES]:
+    begun = [(seed + k) % len(around) for k in range(TRIES)]
+    for outer, steps in product(dict.fromkeys([*begun, *range(min(TRIES, len(around)))]), (0, STEPS)):
         with suppress(ValueError):  # one without thickness, or far too large
-            ratio, curve = _drawing(diagram, around, int(outer), seed)
+            ratio, curve = _drawing(diagram, around, outer, seed, steps)
             drawings.append((measure(curve).l_p, curve))
             if ratio < UNEVEN and drawings[-1][0] < LONGEST:
                 return curve
@@ -89,30 +99,28 @@ def _lifted(diagram: Diagram, seed: int) -> Components:
 
 
 def _drawing(
-    diagram: Diagram, around: Sequence[Sequence[Slot]], outer: int, seed: int
+    diagram: Diagram, around: Sequence[Sequence[Slot]], outer: int, seed: int, steps: int
 ) -> tuple[float, Components]:
-    """Return the curve with this outer face, and the ratio of its longest line to the shortest.
+    """Return the curve with this outer face, made even in so many steps, after how uneven its lines are.
 
-    Raises ValueError where rounding might have let lines cross, or there would be over `MOST_VERTICES`.
+    Raises ValueError where rounding might have let lines cross, or they are so uneven that all are `LARGEST`.
     """
     crossing, edge = _points(diagram)
     lines, triangles, boundary = _triangulated(crossing, edge, around, outer)
     points = _drawn(lines, boundary, np.random.default_rng(seed))
-    one, two, three = points[triangles.T]
-    if _cross(two - one, three - one).min() < FLAT:
+    if areas(points, triangles).min() > FLAT:
+        points = evened(points, triangles, boundary, steps)
+    if areas(points, triangles).min() <= FLAT:
         raise ValueError("a triangle of the drawing is flat")
     lengths = np.linalg.norm(points[lines[:, 0]] - points[lines[:, 1]], axis=1)
     points /= lengths.min()
-    check_size(int(lengths.sum() / lengths.min()), "a diagram drawn so")
+    if lengths.sum() > LARGEST * lengths.min():
+        raise ValueError("some lines are far longer than others")
     curve = [
         _raised([(crossing[slot[0]], edge[slot], slot[1] % 2) for slot in entered], points)
         for entered in diagram.circuits()
     ]
     return lengths.max() / lengths.min(), curve
-
-
-def _cross(one: Floats, other: Floats) -> Floats:
-    return one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
 
 
 def _points(diagram: Diagram) -> tuple[dict[int, int], dict[Slot, int]]:
