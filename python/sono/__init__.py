@@ -17,8 +17,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sono import model as model
     from sono._core import CurveError as CurveError
-    from sono.calls import Comparison as Comparison
-    from sono.calls import compare as compare
     from sono.calls import forces as forces
     from sono.calls import identify as identify
     from sono.calls import measure as measure
@@ -30,6 +28,8 @@ if TYPE_CHECKING:
     from sono.calls import start as start
     from sono.calls import tighten as tighten
     from sono.calls import write as write
+    from sono.comparison import Comparison as Comparison
+    from sono.comparison import compare as compare
     from sono.curve import Curve as Curve
     from sono.curve import Forces as Forces
     from sono.curve import Measures as Measures
@@ -57,8 +57,8 @@ _HOMES = {
     "Stopped": "sono.tightening",
     "Tight": "sono.tightening",
     "Minimum": "sono.searching",
-    "Comparison": "sono.calls",
-    "compare": "sono.calls",
+    "Comparison": "sono.comparison",
+    "compare": "sono.comparison",
     "forces": "sono.calls",
     "identify": "sono.calls",
     "measure": "sono.calls",

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from typing import Any, TypeAlias, cast
 
 from sono import _core, curve, formats, naming, starts
@@ -19,11 +19,9 @@ from sono.curve import CurveLike, Forces, Measures, as_components
 from sono.formats.closing import WAYS, Close
 from sono.jobs.workers import Threads
 from sono.naming import Identity
-from sono.records import Record
 from sono.searching.minima import Minimum, merged
 from sono.searching.search import KEPT, Search
 from sono.searching.trials import FINE_EDGE, Source, Watch, finish, unwatched
-from sono.tables import published
 from sono.tightening import Method, Progress, Run, Tight
 from sono.tightening.once import best_of, changed
 from sono.tightening.settings import LEAST_DL, MOST, MOST_DL, TRIALS, Changes, Settings, whole
@@ -245,47 +243,6 @@ def search(
             finer = [found.confirmed(minimum(), source) for minimum in waiting]
             best = merged(filter(None, finer))
     return [replace(minimum, curve=Curve(minimum.curve)) for minimum in best]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Comparison(Record):
-    """A rope's lengths beside the shortest published ropelength of its knot, and where that is from.
-
-    Differences are ours less the published; `limit`, with its error, estimates L_a on ever finer edges. What
-    is not known is None.
-
-    >>> found = compare(tighten("4_1", 210), "4_1")
-    >>> found.source, abs(found.limit_difference) < 0.05
-    ('ACPR 2011', True)
-    """
-
-    knot: str
-    l_a: float | None
-    l_c: float | None
-    limit: float | None
-    limit_error: float | None
-    published: float | None
-    source: str | None
-    l_a_difference: float | None
-    l_c_difference: float | None
-    limit_difference: float | None
-
-
-def compare(rope: Rope, knot: str) -> Comparison:
-    """Compare a rope's lengths with the shortest published ropelength of a knot.
-
-    Raises `CurveError` for a curve that is not embedded, `ValueError` for a name that is not known. The
-    rope's type is taken as said, and what is published goes by the tables' names: 3_1, not T(2,3).
-
-    >>> compare(tighten("3_1", 240), "3_1").published
-    32.7436
-    """
-    if not isinstance(knot, str) or not starts.knows(knot):
-        raise ValueError(f"{knot!r} is no name of a knot")
-    measures = measure(_components(rope))
-    row = published.extrapolated({"knot": knot, "n": measures.n, "l_a": measures.l_a, "l_c": measures.l_c})
-    found: Any = published.beside(row, published.table())
-    return Comparison(*(found.get(field.name) for field in fields(Comparison)))
 
 
 def _known(name: str) -> list[Any]:
