@@ -16,7 +16,8 @@ class Comparison(Record):
     Differences are ours less the published; `limit`, with its error, estimates L_a on ever finer edges. What
     is not known is None.
 
-    >>> found = compare(tighten("4_1", 210), "4_1")
+    >>> import sono
+    >>> found = compare(sono.tighten("4_1", 210), "4_1")
     >>> found.source, abs(found.limit_difference) < 0.05
     ('ACPR 2011', True)
     """
@@ -39,7 +40,8 @@ def compare(rope: Rope, knot: str) -> Comparison:
     Raises `CurveError` for a curve that is not embedded, `ValueError` for a name that is not known. The
     rope's type is taken as said, and what is published goes by the tables' names: 3_1, not T(2,3).
 
-    >>> compare(tighten("3_1", 240), "3_1").published
+    >>> import sono
+    >>> compare(sono.tighten("3_1", 240), "3_1").published
     32.7436
     """
     if not isinstance(knot, str) or not starts.knows(knot):
