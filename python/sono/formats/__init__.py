@@ -6,7 +6,7 @@ text when nothing else fits; one that is written needs a suffix that is known, o
 
 A file may hold several curves, such as the frames of a simulation: `traj.xyz:12` is the one with the key 12.
 
-May import `curve` and `printing`.
+May import `curve`, `printing` and `starts`.
 """
 
 import os
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import (
+    codes,
     coords,
     fseries,
     ideal,
@@ -99,6 +100,7 @@ READERS: dict[str, Reader] = {
     "vect": vect,
     "xyz": xyz,
     "obj": obj,
+    "codes": codes,  # ahead of JSON, whose brackets they may have
     "json": jsons,
     "lammpstrj": lammpstrj,
     "lammps": lammps,
@@ -153,6 +155,9 @@ SUFFIXES = {
     ".mmcif": "mmcif",
     ".fseries": "fseries",
     ".pkf": "pkf",
+    ".pd": "codes",
+    ".dt": "codes",
+    ".gauss": "codes",
 }
 """The format of a file by its suffix."""
 

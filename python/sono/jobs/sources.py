@@ -41,13 +41,13 @@ def shadowed(source: str) -> bool:
 class Source:
     """A curve to work on, as it was `given`: a file, "FILE:KEY", "-" for standard input, or a knot's name.
 
-    `close` says how open chains are closed. `found` is the curve, or what is wrong with it, if it has been
-    looked at already.
+    `close` says how open chains are closed. `found` is the curve, not yet checked and with the name of its
+    file, or checked, or what is wrong with it, if its file has been looked at already.
     """
 
     given: str
     close: Close | None = None
-    found: VertexFile | FormatError | None = None
+    found: tuple[str, Raw] | VertexFile | FormatError | None = None
 
     def __str__(self) -> str:
         """Give it as the user does."""
@@ -87,8 +87,10 @@ class Source:
         """Read the curve, or draw the knot. Raises `FormatError`."""
         if isinstance(self.found, FormatError):
             raise self.found
-        if self.found:
+        if isinstance(self.found, VertexFile):
             return self.found
+        if self.found:
+            return VertexFile.checked(*self.found, self.close)
         return _drawn(self.given) if is_name(self.given) else formats.read(self.given, self.close)
 
     def looked_at(self) -> Self:
@@ -111,22 +113,13 @@ def curves(given: str, close: Close | None = None) -> list[Source]:
     except FormatError as error:
         return [Source(given, close, error)]
     several = len(found) > 1
-    return [
-        Source(f"{given}:{raw.key}" if several else given, close, _checked(name, raw, close)) for raw in found
-    ]
+    return [Source(f"{given}:{raw.key}" if several else given, close, (name, raw)) for raw in found]
 
 
 def _shortened(knot: str) -> str:
     """Return the name of a knot as tables have it."""
     name = " ".join(knot.split())
     return name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}~{zlib.crc32(name.encode()):08x}"
-
-
-def _checked(name: str, raw: Raw, close: Close | None) -> VertexFile | FormatError:
-    try:
-        return VertexFile.checked(name, raw, close)
-    except FormatError as error:
-        return error
 
 
 def _drawn(knot: str) -> VertexFile:
