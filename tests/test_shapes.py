@@ -35,6 +35,14 @@ def test_shapes_are_the_knots_of_their_names(knot: str) -> None:
     assert measures.dl == pytest.approx(shapes.EDGE, rel=0.01)
 
 
+def test_names_in_other_spellings_are_compared() -> None:
+    published = api.compare(starts.known("8_20") or [], "8_20").published
+    assert published
+    assert [api.compare(starts.known("8_20") or [], name).published for name in ("K8n1", "m8.20")] == 2 * [
+        published
+    ]
+
+
 def test_mirror_images_and_names_in_any_case() -> None:
     shape, mirrored = starts.known("8_20"), starts.known(" M8_20 ")
     assert shape

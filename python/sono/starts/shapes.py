@@ -21,8 +21,7 @@ import numpy as np
 
 from sono.curve import Components
 from sono.starts.drawing import mirror
-from sono.starts.spelling import spelled
-from sono.starts.tabled import knot_rows
+from sono.starts.tabled import tabled_name
 
 EDGE = 0.45
 """Edge length of the shapes, in radii."""
@@ -47,9 +46,8 @@ def known(name: str) -> Components | None:
     if plain[:1].casefold() == "m":
         found = known(plain[1:])
         return found and mirror(found)
-    row = knot_rows().get(spelled(plain), {"knot": spelled(plain)})
     there = {knot.casefold(): knot for knot in lengths()}
-    knot = there.get(row["knot"].casefold())
+    knot = there.get(tabled_name(plain).casefold())
     return shape(knot) if knot else None
 
 

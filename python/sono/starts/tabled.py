@@ -18,6 +18,7 @@ from sono.starts.codes import diagram
 from sono.starts.flypes import flyped
 from sono.starts.links import link_row, ordered_like, oriented_like
 from sono.starts.planar import lifted
+from sono.starts.spelling import spelled
 from sono.starts.tables import table
 from sono.starts.torus import chain, torus
 
@@ -57,6 +58,16 @@ def table_row(name: str) -> dict[str, str] | None:
         ) from None
     except KeyError:
         return None
+
+
+def tabled_name(name: str) -> str:
+    """Return the name by which the tables have a knot to 10 crossings, or else the name as it is spelled here.
+
+    >>> tabled_name("K8n1"), tabled_name("8.20"), tabled_name("K11n34"), tabled_name("T(2,5)")
+    ('8_20', '8_20', '11n_34', 'T(2,5)')
+    """
+    row = knot_rows().get(spelled(name).casefold())
+    return row["knot"] if row else spelled(name)
 
 
 def is_tabled(name: str) -> bool:

@@ -58,7 +58,7 @@ def from_file(path: str) -> dict[str, Row]:
 def _type(knot: Value) -> str:
     """Return the name of a knot, as tables have it, without what files and mirror images add to it."""
     stem = re.sub(r"(\.tight|\.n\d+|\.best\d*)+$", "", str(knot))
-    return re.sub("^m(?=.)", "", stem, flags=re.IGNORECASE)
+    return starts.tabled_name(re.sub("^m(?=.)", "", stem, flags=re.IGNORECASE))
 
 
 def beside(row: Row, published: dict[str, Row]) -> Row:
