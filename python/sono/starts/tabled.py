@@ -61,7 +61,7 @@ def table_row(name: str) -> dict[str, str] | None:
 
 
 def tabled_name(name: str) -> str:
-    """Return the name by which the tables have a knot to 10 crossings, or else the name as it is spelled here.
+    """Return the name by which the tables have a knot to 10 crossings, or else as it is spelled here.
 
     >>> tabled_name("K8n1"), tabled_name("8.20"), tabled_name("K11n34"), tabled_name("T(2,5)")
     ('8_20', '8_20', '11n_34', 'T(2,5)')
