@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+from contextlib import nullcontext
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -43,7 +44,7 @@ def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: op
     from sono.jobs.sources import curves
 
     failed = False
-    with shown.table(taken=pd) as table:
+    with nullcontext() if pd else shown.table() as table:
         for source in chain.from_iterable(curves(given, close) for given in sources):
             try:
                 doubts, found = _identified(source)
@@ -53,9 +54,10 @@ def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: op
                 continue
             for doubt in doubts:
                 shown.tell(doubt)
-            if pd:
+            if table:
+                table.row(row(str(source), found))
+            else:
                 _write_pd(str(source), found, shown)
-            table.row(row(str(source), found))
     sys.exit(1 if failed else 0)
 
 
