@@ -62,7 +62,7 @@ def test_what_may_be_larger_than_the_table_is_not_named(folder: Path, sono: Sono
     result = sono("identify", "larger.pd", "3_1.txt", "--columns", "knot,known,may_be")
     assert (result.exit_code, result.stderr) == (0, "")
     assert [line.split("\t") for line in result.stdout.splitlines()] == [
-        ["knot", "known", "may be"],
+        ["knot", "known", "may_be"],
         ["-", "undecided", "12a_786 or not in the table"],
         ["3_1", "proven", "-"],
     ]
