@@ -42,9 +42,9 @@ class Identity(Record):
     linked, "?" is a part without a name, if others have one. A sum of links does not say which of their
     components are joined. `known` tells how: "proven" where moves make the table's diagrams of the curve's,
     and there is one name; "invariants" where these agree, and its diagram has so few crossings that the
-    table has its type; "not in the table", for which a sum that its diagram hides is taken too; or
-    "undecided" where the HOMFLY polynomial takes too long, or where a type in the table shares the
-    invariants, but a larger one may as well: `may_be` has the names with such types.
+    table has its type; "not in the table"; or "undecided" where the HOMFLY polynomial takes too long, or
+    where a type in the table shares the invariants, but a larger one may as well: `may_be` has the names
+    with such types. Only a proof rules out that a diagram hides a sum.
 
     `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
     the incoming lower one. It has so many `crossings`, and no trace of the `circles` that have none.
