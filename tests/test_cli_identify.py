@@ -49,7 +49,23 @@ def test_pd_codes(curves: Path, sono: Sono) -> None:
     assert sorted(edge for code in trefoil for edge in code) == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6]
     loud = sono("identify", "--pd", "unknot.txt")
     assert loud.stdout == "[]\n"
-    assert "sono: unknot.txt: 1 of 1 components have no crossings, and no trace here" in loud.stderr
+    assert loud.stderr == "sono: unknot.txt: 1 of 1 components have no crossings, and no trace here\n"
+    assert sono("identify", "--pd", "mirror.txt", "3_1.txt").stderr == ""
+
+
+def test_what_may_be_larger_than_the_table_is_not_named(folder: Path, sono: Sono) -> None:
+    # K14n4749 of the table of J. Hoste, M. Thistlethwaite and J. Weeks, 1998.
+    (folder / "larger.pd").write_text(
+        "(3,1,4,28),(1,7,2,6),(7,3,8,2),(4,16,5,15),(16,6,17,5),(17,8,18,9),(9,20,10,21),"
+        "(19,10,20,11),(11,18,12,19),(25,12,26,13),(13,24,14,25),(21,14,22,15),(27,23,28,22),(23,27,24,26)"
+    )
+    result = sono("identify", "larger.pd", "3_1.txt", "--columns", "knot,known,may_be")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert [line.split("\t") for line in result.stdout.splitlines()] == [
+        ["knot", "known", "may_be"],
+        ["-", "undecided", "12a_786 or not in the table"],
+        ["3_1", "proven", "-"],
+    ]
 
 
 def test_standard_input(folder: Path, sono: Sono) -> None:

@@ -2,7 +2,7 @@
 
 import json
 import re
-from itertools import product
+from itertools import permutations, product
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ import pytest
 import sono
 from sono import _core
 from sono.curve import Components, Floats
-from sono.invariants.crossings import crossings, diagram, planar_diagram
+from sono.invariants.crossings import crossings, diagram, linking_matrix, planar_diagram
 from sono.invariants.diagrams import (
     Gauss,
     alexander_polynomial,
@@ -37,6 +37,14 @@ SUMS = {
     "5_1#Hopf": "L2a1{1}#5_1",
 }
 TYPES = table("types")
+# K14n16551 and K14n4749, which share HOMFLY polynomials and signatures with knots of the table: PD codes from
+# SnapPy's table of knots, that of J. Hoste, M. Thistlethwaite and J. Weeks (The first 1,701,936 knots, 1998).
+LARGER = {
+    "13n_2853": "pd:(3,1,4,28),(1,11,2,10),(11,3,12,2),(4,19,5,20),(26,6,27,5),(6,18,7,17),(16,8,17,7),"
+    "(8,24,9,23),(14,9,15,10),(12,21,13,22),(22,13,23,14),(24,16,25,15),(18,26,19,25),(20,27,21,28)",
+    "12a_786": "pd:(3,1,4,28),(1,7,2,6),(7,3,8,2),(4,16,5,15),(16,6,17,5),(17,8,18,9),(9,20,10,21),"
+    "(19,10,20,11),(11,18,12,19),(25,12,26,13),(13,24,14,25),(21,14,22,15),(27,23,28,22),(23,27,24,26)",
+}
 
 
 def polygon(seed: int, n: int) -> Floats:
@@ -79,11 +87,54 @@ def test_parts_that_are_apart() -> None:
     assert identify([*trefoil, *over]).name == "3_1+4_1"
 
 
-@pytest.mark.parametrize("name", ["T(2,15)", "T(3,7)", "T(2,10)", "9_1#T(2,15)"])
+@pytest.mark.parametrize("name", ["T(2,15)", "T(3,7)", "T(2,10)", "T(2,15)#T(4,5)"])
 def test_what_the_table_has_not(name: str) -> None:
     found = identify(start(name))
     assert (found.names, found.name, found.known) == ((), None, "not in the table")
     assert found.homfly
+
+
+@pytest.mark.parametrize("wanted", LARGER)
+def test_invariants_do_not_name_what_may_be_larger_than_the_table(wanted: str) -> None:
+    curve = start(LARGER[wanted])
+    for seen, name in ((curve, wanted), (mirror(curve), f"m{wanted}")):
+        found = identify(seen)
+        assert (found.names, found.known, found.crossings) == ((), "undecided", 14)
+        assert found.may_be == (name,)
+    assert identify(start(wanted)).proven
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("9_1#T(2,15)", "9_1#?"), ("Hopf#T(4,5)", "L2a1{1}#?"), ("T(4,5)#m3_1#T(2,15)", "m3_1#?#?")],
+)
+def test_sums_name_the_parts_that_have_names(name: str, expected: str) -> None:
+    found = identify(start(name))
+    assert (found.name, found.known, found.may_be) == (expected, "not in the table", ())
+
+
+def test_parts_that_are_apart_name_those_that_have_names() -> None:
+    larger, far = start(LARGER["12a_786"]), [component + 100 for component in start("m5_2")]
+    found = identify([*larger, *far])
+    assert (found.name, found.known, found.may_be) == ("m5_2+?", "undecided", ("m5_2+12a_786",))
+    found = identify([*start("T(4,5)"), *far, far[0] + 100, np.eye(3) - 100])
+    assert (found.name, found.known, found.may_be) == ("0_1+m5_2+m5_2+?", "not in the table", ())
+    assert identify([*start("T(4,5)"), start("T(2,15)")[0] + 100]).name is None
+
+
+def test_links_show_the_smallest_diagram_that_was_met() -> None:
+    curve = scramble(start("Borromean"), 1, swirls=12)
+    assert len(shortened(gauss_code(diagram(curve)))[1]) > 6
+    found = identify(curve)
+    assert (found.name, found.known, found.crossings, len(found.pd)) == ("L6a4{0,0}", "proven", 6, 6)
+
+
+def test_linking_numbers_are_in_the_order_of_the_curve() -> None:
+    link = start("L8a16{0,0}")
+    for order in permutations(range(3)):
+        curve = [link[number] for number in order]
+        expected = linking_matrix(diagram(curve))[np.triu_indices(3, 1)]
+        assert identify(curve).linking == tuple(expected.tolist())
 
 
 def test_what_is_too_entangled() -> None:

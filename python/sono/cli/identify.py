@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+from contextlib import nullcontext
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -27,20 +28,23 @@ def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: op
     """Name the knot or link of curves: a row for each FILE, - for standard input, or each curve in it.
 
     Names are those of KnotInfo for prime knots to 13 crossings and of LinkInfo for prime links to 9; m is the
-    mirror image, # a connected sum, + stands between parts that are not linked. A name is proven where moves
-    make the table's diagram of the curve's; where only invariants tell, all knots that share them are named.
-    What is not in the table has no name, and an undecided one has too many crossings.
+    mirror image, # a connected sum, + stands between parts that are not linked, ? is a part that has no name.
 
-    Further columns are components, determinant, signature, linking (numbers), alexander and homfly, which is
-    in Regina's alpha (x) and z (y). The crossings are those of the curve's simplified diagram. Its PD code
-    gives for each crossing the four edges, counter-clockwise from the incoming lower one.
+    A name is proven where moves make the table's diagram of the curve's. Where only invariants tell, all
+    knots that share them are named, if a diagram has so few crossings that the table has its knot. What is
+    not in the table has no name. What is undecided has none either: it has too many crossings for HOMFLY,
+    or shares invariants with knots in the table, which may_be tells, but may be a larger knot.
+
+    Further columns are may_be, components, determinant, signature, linking (numbers), alexander and homfly,
+    which is in Regina's alpha (x) and z (y). The crossings are those of the curve's simplified diagram. Its
+    PD code gives for each crossing the four edges, counter-clockwise from the incoming lower one.
     """
     # Imported here, since numpy would make --help wait.
     from sono.formats import FormatError
     from sono.jobs.sources import curves
 
     failed = False
-    with shown.table(taken=pd) as table:
+    with nullcontext() if pd else shown.table() as table:
         for source in chain.from_iterable(curves(given, close) for given in sources):
             try:
                 doubts, found = _identified(source)
@@ -50,9 +54,10 @@ def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: op
                 continue
             for doubt in doubts:
                 shown.tell(doubt)
-            if pd:
+            if table:
+                table.row(row(str(source), found))
+            else:
                 _write_pd(str(source), found, shown)
-            table.row(row(str(source), found))
     sys.exit(1 if failed else 0)
 
 
@@ -80,7 +85,8 @@ def _identified(source: "Source") -> "tuple[list[str], Identity]":
 def row(name: str, found: "Identity") -> tables.Row:
     """Return the row of a curve."""
     linking = " ".join(map(str, found.linking)) or None
-    return {**found.to_dict(), "file": name, "knot": found.name, "linking": linking}
+    may_be = " or ".join((*found.may_be, "not in the table")) if found.may_be else None
+    return {**found.to_dict(), "file": name, "knot": found.name, "linking": linking, "may_be": may_be}
 
 
 def _write_pd(name: str, found: "Identity", shown: options.Shown) -> None:

@@ -6,6 +6,7 @@
 """
 
 import re
+import sys
 from dataclasses import dataclass
 from itertools import islice, product
 from typing import Literal
@@ -36,12 +37,14 @@ MOST_NAMES = 100
 class Identity(Record):
     """What knot or link a curve is, and what tells it.
 
-    `names` are those of all types in the table, prime knots to 13 crossings, prime links to 9 and their sums,
-    that it may be; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not linked.
-    A sum of links does not say which of their components are joined. `known` tells how: "proven" where moves
-    make the table's diagrams of the curve's, and there is one name; "invariants" where these agree;
-    "not in the table", for which a sum that its diagram hides is taken too; or "undecided" where its HOMFLY
-    polynomial takes too long.
+    `names` are those of all types in the table, prime knots to 13 crossings, prime links to 9 and their
+    sums, that it can be; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not
+    linked, "?" is a part without a name, if others have one. A sum of links does not say which of their
+    components are joined. `known` tells how: "proven" where moves make the table's diagrams of the curve's,
+    and there is one name; "invariants" where these agree, and its diagram has so few crossings that the
+    table has its type; "not in the table"; or "undecided" where the HOMFLY polynomial takes too long, or
+    where a type in the table shares the invariants, but a larger one may as well: `may_be` has the names
+    with such types. Only a proof rules out that a diagram hides a sum.
 
     `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
     the incoming lower one. It has so many `crossings`, and no trace of the `circles` that have none.
@@ -57,6 +60,7 @@ class Identity(Record):
 
     names: tuple[str, ...]
     known: Literal["proven", "invariants", "not in the table", "undecided"]
+    may_be: tuple[str, ...]
     components: int
     crossings: int
     circles: int
@@ -69,7 +73,7 @@ class Identity(Record):
 
     @property
     def name(self) -> str | None:
-        """The name, or all of them, with "or" between; None where the table has no such type."""
+        """The name, or all of them, with "or" between; None where no part has one."""
         return " or ".join(self.names) or None
 
     @property
@@ -86,20 +90,24 @@ def identify(curve: Components) -> Identity:
     """
     gauss = shortened(gauss_code(diagram(curve)))
     pieces = pieces_of(gauss)
-    if len(curve) == 1 and len(pieces[0]) == 1:
+    # The table's diagram may have the components in another order.
+    linking = linking_matrix(as_crossings(gauss))
+    if [len(piece) for piece in pieces] == [1]:
         gauss = pieces[0][0].diagram
     found = as_crossings(gauss)
-    names = _names([[prime.names for prime in piece] for piece in pieces])
+    primes = [prime for piece in pieces for prime in piece]
+    may_be = [[prime.names or prime.may_be for prime in piece] for piece in pieces]
     polynomial = _polynomial(pieces)
     return Identity(
-        names=names,
-        known=_how([prime for piece in pieces for prime in piece]),
+        names=_names([[prime.names for prime in piece] for piece in pieces]),
+        known=_how(primes),
+        may_be=_names(may_be) if any(prime.may_be for prime in primes) else (),
         components=len(curve),
         crossings=len(found.sign),
         circles=gauss[0].count([]),
         determinant=round(alexander(found, -1)),
         signature=signature(found, -1),
-        linking=tuple(linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()),
+        linking=tuple(linking[np.triu_indices(len(curve), 1)].tolist()),
         homfly=None if polynomial is None else written(polynomial),
         alexander=None if polynomial is None else alexander_polynomial(polynomial),
         pd=tuple(planar_diagram(found)),
@@ -116,13 +124,13 @@ def _how(primes: list[Prime]) -> Literal["proven", "invariants", "not in the tab
 
 
 def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
-    """Return the names of what is made of parts that may have these names."""
+    """Return the names of what is made of parts that may have these names, if any has one."""
     names: dict[str, None] = {}
-    for way in islice(product(*(choices for piece in pieces for choices in piece)), MOST_NAMES):
+    for way in islice(product(*(choices or ["?"] for piece in pieces for choices in piece)), MOST_NAMES):
         parts = iter(way)
         sums = ["#".join(sorted((next(parts) for _ in piece), key=_order)) or "0_1" for piece in pieces]
         names["+".join(sorted(sums, key=_order))] = None
-    return tuple(names)
+    return tuple(name for name in names if not set(name) <= set("?#+"))
 
 
 def _polynomial(pieces: list[list[Prime]]) -> Polynomial | None:
@@ -138,5 +146,5 @@ def _polynomial(pieces: list[list[Prime]]) -> Polynomial | None:
 
 
 def _order(name: str) -> tuple[list[int], str]:
-    """Return by what names are sorted: crossings and numbers first."""
-    return [int(number) for number in re.findall(r"\d+", name)], name
+    """Return by what names are sorted: crossings and numbers first, what has no name last."""
+    return [int(number) for number in re.findall(r"\d+", name)] or [sys.maxsize], name

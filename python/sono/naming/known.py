@@ -15,6 +15,9 @@ from importlib import resources
 from sono.invariants.diagrams import Gauss, Polynomial, homfly_polynomial
 from sono.naming.letters import unpacked
 
+MOST_OF_KNOTS, MOST_OF_LINKS = 13, 9
+"""Crossings up to which the table has all prime knots and all prime links."""
+
 SAME_AS_MIRROR = "="
 """Ends the letters of a type that is its own mirror image, or whose mirror image has a name without m."""
 
@@ -36,6 +39,12 @@ def sharing(polynomial: Polynomial) -> list[Type]:
     """Return all types of the table with this HOMFLY polynomial, those of fewest crossings first."""
     types = (type for name, letters in _rows(key(polynomial)) for type in _with_mirror(name, letters))
     return [type for type in types if homfly_polynomial(type.diagram) == polynomial]
+
+
+def must_be_known(prime: Gauss) -> bool:
+    """Tell whether the table has the type of a prime link for certain: it has all of so few crossings."""
+    passages, right = prime
+    return len(right) <= (MOST_OF_KNOTS if len(passages) == 1 else MOST_OF_LINKS)
 
 
 def key(polynomial: Polynomial) -> str:

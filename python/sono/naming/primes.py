@@ -13,7 +13,7 @@ from sono import _core
 from sono.invariants.diagrams import Gauss, Polynomial, as_crossings, homfly_polynomial
 from sono.invariants.identify import ORDERS
 from sono.invariants.signatures import signature
-from sono.naming.known import Type, sharing
+from sono.naming.known import Type, must_be_known, sharing
 
 MOST_SIMPLER, MOST_PROOF = 1_000, 10_000
 """Diagrams that are looked at, for one with fewer crossings and for a proof; 10,000 take some 0.3 s."""
@@ -26,13 +26,16 @@ MOST_UNKNOWN = 20
 class Prime:
     """A prime part of a link: its smallest diagram that was met, and its HOMFLY polynomial, if it is known.
 
-    `names` are those it may have; if it is `proven`, there is one. It `is_new` where the table has none.
+    `names` are those of types of which it must be one; if it is `proven`, there is one name. `may_be` has
+    those that its invariants allow where it may be a larger type as well. It `is_new` where they allow
+    none.
     """
 
     diagram: Gauss
     is_new: bool
     polynomial: Polynomial | None
     names: list[str]
+    may_be: list[str]
     proven: bool
 
 
@@ -51,10 +54,11 @@ def _known(prime: Gauss) -> Prime:
     at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
     if at is not None:
         smallest = min(prime, types[at].diagram, key=lambda gauss: len(gauss[1]))
-        return Prime(smallest, False, polynomial, [types[at].name], True)
-    names = [type.name for type in types if _may_be(prime, type)]
-    is_new = not names and (polynomial is not None or _is_alternating(prime))
-    return Prime(prime, is_new, polynomial, names, False)
+        return Prime(smallest, False, polynomial, [types[at].name], [], True)
+    possible = [type.name for type in types if _may_be(prime, type)]
+    is_new = not possible and (polynomial is not None or _is_alternating(prime))
+    names, may_be = (possible, []) if must_be_known(prime) else ([], possible)
+    return Prime(prime, is_new, polynomial, names, may_be, False)
 
 
 def _may_be(prime: Gauss, type: Type) -> bool:

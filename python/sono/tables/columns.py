@@ -65,6 +65,7 @@ COLUMNS = {
         Column("seed", "seed", "seed", "d", 6),
         Column("type", "type", "type", "", 9),
         Column("known", "known", "known", "", 16),
+        Column("may_be", "may be", "may be", "", 24),
         Column("crossings", "crossings", "crossings", "d", 9),
         Column("determinant", "determinant", "determinant", "d", 11),
         Column("signature", "signature", "signature", "d", 9),
