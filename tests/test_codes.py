@@ -253,6 +253,7 @@ def test_all_codes_of_linkinfo_are_those_of_its_braids() -> None:
         ("pd:[(2,4,1,5),(3,1,4,6),(5,3,6,2)]", "crossing 1 of the PD code, (2, 4, 1, 5), is passed below"),
         ("pd:[(3,2,4,1),(4,3,1,2)]", "cannot be drawn in the plane"),
         ("pd:hello", "not readable"),
+        ("pd:[(2 1\n2)]", "[2 1 2] is no crossing"),
         ("dt:", "not readable"),
         ("dt:4 6", "it has 2 numbers, so these are 2 to 4, even, each once"),
         ("dt:4 5 2", "even"),

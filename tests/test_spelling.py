@@ -96,6 +96,8 @@ def test_what_is_no_name_stays_as_it_is() -> None:
         ("5 2/3", "unknown knot '5 2/3': known are"),
         ("[4,6,2]", "known are"),
         ("m(3_1", "unknown knot 'm(3_1'"),
+        ("mirror imag of (3_1#4_1)", "unknown knot"),
+        ("T(2,3#4_1", "unknown knot 'T(2,3#4_1'"),
         ("(3_1)(4_1)", "unknown knot '(3_1)(4_1)'"),
         *[
             (name, f"unknown knot {name!r}: a part has no name")

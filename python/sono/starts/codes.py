@@ -41,10 +41,11 @@ def diagram(kind: str, text: str) -> Diagram:
     Raises ValueError for what is no such code, and for a code without a diagram in the plane.
     """
     read = {"pd": _pd, "dt": _dt, "gauss": _gauss}[kind]
+    text = " ".join(text.split())
     try:
-        return read(text.strip())
+        return read(text)
     except ValueError as error:
-        shown = text.strip() if len(text) < 80 else text.strip()[:75] + " ..."
+        shown = text if len(text) < 80 else text[:75] + " ..."
         raise ValueError(f"{KINDS[kind]} code {shown!r}: {error}") from error
 
 

@@ -1,6 +1,6 @@
 """How people write the names of knots and links, and what a wrong name might have meant.
 
->>> [str(part) for part in summands("!3_1 \\# mirror image of (m3_1 ♯ T(2,5))")]
+>>> [str(part) for part in summands("!3_1 # mirror image of (m3_1 ♯ T(2,5))")]
 ['m3_1', '3_1', 'mT(2,5)']
 >>> [spelled(name) for name in ("3.1", "4₁", "K11n34", "4_{1}^{2}", "5.2.1", "5:2:1", "8:1:20", "L5a1{ 1 }")]
 ['3_1', '4_1', '11n_34', '4^2_1', '5^2_1', '5^2_1', '8_20', 'L5a1{1}']
@@ -80,9 +80,11 @@ def summands(name: str, mirrored: bool = False) -> list[Part]:
     if len(texts) > 1:
         return [part for text in texts for part in summands(text, mirrored)]
     text = texts[0].strip()
-    if found := _MIRRORED.fullmatch(text):
-        return summands(_opened(found["after"] or found["before"] or ""), not mirrored)
-    if "#" in (meant := _opened(text)) or (meant := _WORDS.get(_word(text), "")):
+    while found := _MIRRORED.fullmatch(text):
+        text, mirrored = _opened(found["after"] or found["before"] or ""), not mirrored
+    inner = _opened(text)
+    meant = inner if inner != text and "#" in inner else _WORDS.get(_word(text))
+    if meant:
         return summands(meant, mirrored)
     return [Part(text, mirrored)]
 
