@@ -34,6 +34,7 @@ _PDS = [("PD[X[", "], X[", "]]"), ("X[", "] X[", "]"), ("[[", "],[", "]]"), ("[ 
             (name, "m3_1")
             for name in ("3_1*", "3_1!", "!3_1", "*3_1", "m(3_1)", "mirror image of 3_1", "!m!3_1")
         ],
+        *[(name, "4_1#m3_1") for name in ("m(m4_1#3_1)", "(4_1#m3_1)", "!m!(!4_1#3_1)", "(4_1#3_1*)")],
         *[(name, "m3_1#T(2,-3)") for name in ("m(3_1#T(2,3))", "!(3_1♯T(2,3))", "3_1!\\#m (T_{2,3})")],
         *[(name, "4_1") for name in ("figure eight", "figure-eight", "Figure-Eight Knot", "figure_eight")],
         *[(name, "0_1") for name in ("0.1", "K0a1", "0₁", "unknot", "trivial knot", "$0_1$")],

@@ -81,17 +81,14 @@ def summands(name: str, mirrored: bool = False) -> list[Part]:
         return [part for text in texts for part in summands(text, mirrored)]
     text = texts[0].strip()
     while found := _MIRRORED.fullmatch(text):
-        text, mirrored = _opened(found["after"] or found["before"] or ""), not mirrored
-    inner = _opened(text)
-    meant = inner if inner != text and "#" in inner else _WORDS.get(_word(text))
-    if meant:
-        return summands(meant, mirrored)
+        text, mirrored = (found["after"] or found["before"] or "").strip(), not mirrored
+        if re.fullmatch(r"\([^#]*\)", text):
+            text = text[1:-1].strip()
+    if inner := re.fullmatch(r"\((.*#.*)\)", text, re.DOTALL):
+        return summands(inner[1], mirrored)
+    if word := _WORDS.get(_word(text)):
+        return summands(word, mirrored)
     return [Part(text, mirrored)]
-
-
-def _opened(text: str) -> str:
-    """Return what is in brackets, if these are round all of it."""
-    return re.sub(r"^\((.*)\)$", r"\1", text.strip(), flags=re.DOTALL)
 
 
 def _word(name: str) -> str:
