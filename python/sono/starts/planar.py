@@ -186,7 +186,7 @@ def _drawn(lines: NDArray[np.int_], boundary: NDArray[np.int_], random: np.rando
 
 
 def _solved(form: Floats, pull: Floats, middle: NDArray[np.bool_]) -> Floats:
-    """Return the solution (n, 2) of a linear system, the `middle` of whose unknowns are joined to others alone.
+    """Return the solution (n, 2) of a linear system whose `middle` unknowns are joined to others alone.
 
     These go first, which halves the system: threads that share a larger one wait on a busy machine.
     """
