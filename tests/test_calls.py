@@ -86,7 +86,7 @@ def test_names_go_in_too(tmp_path: Path) -> None:
     sono.write(tmp_path / "hopf.vect", "Hopf")
     assert sono.read(tmp_path / "hopf.vect") == sono.start("Hopf")
     assert "8_18" in sono.names()
-    with pytest.raises(ValueError, match="did you mean"):
+    with pytest.raises(ValueError, match="there is only '3_1'"):
         sono.start("3_11")
 
 

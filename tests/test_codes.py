@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from itertools import product
 
 import numpy as np
@@ -133,7 +134,17 @@ def test_random_polygons_are_read_as_they_are_written(seed: int) -> None:
 
 
 def test_kinks_and_circles_are_drawn_as_what_they_are() -> None:
-    for code in ("X[1,2,2,1]", "X[1,1,2,2]", "X[2,1,1,2]", "X[2,2,1,1]", "Loop[1]", "P[1,2] P[2,1]"):
+    for code in (
+        "X[1,2,2,1]",
+        "X[1,1,2,2]",
+        "X[2,1,1,2]",
+        "X[2,2,1,1]",
+        "Loop[1]",
+        "P[1,2] P[2,1]",
+        "P[1,1]",
+        "[]",
+        "PD[]",
+    ):
         assert fingerprint(start(f"pd:{code}")) == UNKNOT
     for kinks in product((1, -1), repeat=3):
         words = [(k + 1, over) for k, kink in enumerate(kinks) for over in (kink > 0, kink < 0)]
@@ -223,7 +234,16 @@ def test_all_codes_of_linkinfo_are_those_of_its_braids() -> None:
     ("code", "message"),
     [
         ("pd:", "not readable; write it like"),
-        ("pd:[]", "not readable"),
+        ("pd:[[]]", "not readable"),
+        ("pd:[] x", "not readable"),
+        ("pd:P[1,2]", "edge 1 occurs once"),
+        ("pd:P[1,2] P[2,3]", "occurs once"),
+        ("pd:P[1,2] P[1,2] P[1,2]", "occurs 3 times"),
+        ("pd:X[1,5,2,4] X[3,1,4,6] X[5,3,6,2] P[7,8]", "occurs once"),
+        ("pd:X[1,5,2,4] X[3,1,4,6] X[5,3,6,2] P[1,2]", "occurs 3 times"),
+        ("pd:X[1,2,1,2]", "cannot be drawn in the plane"),
+        ("pd:X[2,1,3,1] X[2,4,3,4]", "cannot be drawn in the plane"),
+        ("pd:[(4,2,7,4),(6,3,6,3),(2,1,7,1),(5,8,5,8)]", "cannot be drawn in the plane"),
         ("pd:1,5,2", "no crossing, which has four edges"),
         ("pd:[(1,5,2,4),(3,1,4,6),(5,3,6)]", "[5,3,6] is no crossing"),
         ("pd:Y[1,2,3,4]", "Y[1,2,3,4] is no crossing"),
@@ -233,6 +253,7 @@ def test_all_codes_of_linkinfo_are_those_of_its_braids() -> None:
         ("pd:[(2,4,1,5),(3,1,4,6),(5,3,6,2)]", "crossing 1 of the PD code, (2, 4, 1, 5), is passed below"),
         ("pd:[(3,2,4,1),(4,3,1,2)]", "cannot be drawn in the plane"),
         ("pd:hello", "not readable"),
+        ("pd:[(2 1\n2)]", "[2 1 2] is no crossing"),
         ("dt:", "not readable"),
         ("dt:4 6", "it has 2 numbers, so these are 2 to 4, even, each once"),
         ("dt:4 5 2", "even"),
@@ -257,6 +278,19 @@ def test_bad_codes(code: str, message: str) -> None:
     with pytest.raises(ValueError, match=re.escape(message)) as error:
         start(code)
     assert len(str(error.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_random_code_is_a_diagram_or_an_error(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    drawn = 0
+    for _ in range(100):
+        labels = random.permutation(np.repeat(np.arange(2 * random.integers(1, 6)), 2)).reshape(-1, 4)
+        pairs = "".join(f" P{pair.tolist()}" for pair in random.integers(0, 12, (random.integers(4) // 3, 2)))
+        with suppress(ValueError):
+            assert len(reduced(read("pd", f"{labels.tolist()}{pairs}")).far) <= labels.size
+            drawn += 1
+    assert drawn > 5
 
 
 def test_codes_have_variants_of_both_kinds() -> None:

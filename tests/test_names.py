@@ -122,7 +122,7 @@ def test_negative_torus_types_are_mirror_images() -> None:
         ("10_166", "10_166 is 10_165"),
         ("14a_1", "tables end"),
         ("11a_9999", "one of 11a_1 to 11a_367"),
-        ("m3_2", "unknown knot '3_2'"),
+        ("m3_2", "unknown knot 'm3_2'"),
         ("quipu", "known are 3_1 to 10_165"),
         ("T(0,3)", "must not be zero"),
         ("T(2,0)", "must not be zero"),

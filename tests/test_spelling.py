@@ -6,6 +6,8 @@ import pytest
 from sono.starts import knows, start
 from sono.starts.spelling import MOST, spelled
 
+_PDS = [("PD[X[", "], X[", "]]"), ("X[", "] X[", "]"), ("[[", "],[", "]]"), ("[ (", "), (", ") ]")]
+
 
 @pytest.mark.parametrize(
     ("name", "plain"),
@@ -22,7 +24,35 @@ from sono.starts.spelling import MOST, spelled
         ],
         *[(name, "9^2_57") for name in ("9.2.57", "9:2:57", "9_57^2")],
         *[(name, "L6a4{1,0}") for name in ("L6a4{1, 0}", " l6a4{ 1,0 }")],
-        *[(name, "11a_1") for name in ("K11a1", "11a1", "k11A_1")],
+        *[(name, "11a_1") for name in ("K11a1", "11a1", "k11A_1", "11a001", "Knot[11,Alternating,1]")],
+        *[(name, "11n_34") for name in ("11^n_34", "11^{n}_{34}", "11_n34", "11_{n34}", "11n:34")],
+        *[
+            (name, "3_1")
+            for name in ("003_1", "3_01", "$3_1$", "Knot[3,1]", "trefoil", "Right-handed Trefoil")
+        ],
+        *[
+            (name, "m3_1")
+            for name in ("3_1*", "3_1!", "!3_1", "*3_1", "m(3_1)", "mirror image of 3_1", "!m!3_1")
+        ],
+        *[(name, "4_1#m3_1") for name in ("m(m4_1#3_1)", "(4_1#m3_1)", "!m!(!4_1#3_1)", "(4_1#3_1*)")],
+        *[(name, "m3_1#T(2,-3)") for name in ("m(3_1#T(2,3))", "!(3_1♯T(2,3))", "3_1!\\#m (T_{2,3})")],
+        *[(name, "4_1") for name in ("figure eight", "figure-eight", "Figure-Eight Knot", "figure_eight")],
+        *[(name, "0_1") for name in ("0.1", "K0a1", "0₁", "unknot", "trivial knot", "$0_1$")],
+        *[(name, "4^2_1") for name in ("$4_1^2$", "Solomon's link", "Solomon link", "Link[4,Alternating,1]")],
+        *[("granny knot", "3_1#3_1"), ("Square Knot", "3_1#m3_1"), ("mgranny", "m3_1#m3_1")],
+        *[("Hopf link", "Hopf"), ("Borromean rings", "L6a4"), ("whitehead link", "L5a1")],
+        *[
+            ("T_{2,3}", "T(2,3)"),
+            ("T[ 2 , 3 ]", "T(2,3)"),
+            ("TorusKnot[5,3]", "T(5,3)"),
+            ("T(2,−5)", "T(2,-5)"),
+        ],
+        *[(name, "C(2,3)") for name in ("C[2,3]", "C(2 3)", "[ 2 3 ]", "[23]")],
+        *[("[10]", "C(10)"), ("[11]", "C(11)"), ("[112]", "C(1,1,2)"), ("P[−2 3, 7]", "P(-2,3,7)")],
+        *[(name, "dt:4 6 2") for name in ("DT[cacbca]", "DT:[(4,6,2)]", "DTCode[4,6,2]", "DT code: 4 6 2")],
+        *[("GaussCode[-1,2,-3,1,-2,3]", "gauss:-1 2 -3 1 -2 3"), ("[]", "pd:Loop[1]")],
+        *[(f"{a}1,5,2,4{b}3,1,4,6{b}5,3,6,2{c}", "pd:1,5,2,4;3,1,4,6;5,3,6,2") for a, b, c in _PDS],
+        ("X1524 X3146 X5362", "pd:1,5,2,4;3,1,4,6;5,3,6,2"),
         *[(name, "m11n_34") for name in ("mK11n34", "m11n34", "M 11n_34")],
     ],
 )
@@ -43,9 +73,9 @@ def test_what_is_no_name_stays_as_it_is() -> None:
     [
         ("8_22", "one of 8_1 to 8_21?"),
         ("8.22", "one of 8_1 to 8_21?"),
-        ("L5a2", "did you mean 'L5a1'?"),
+        ("L5a2", "there is only 'L5a1'"),
         ("L9a999", "one of L9a1 to L9a55?"),
-        ("5^2_2", "did you mean '5^2_1'?"),
+        ("5^2_2", "there is only '5^2_1'"),
         ("8.3.11", "one of 8^3_1 to 8^3_10?"),
         ("Withehead", "did you mean 'Whitehead'?"),
         ("Boromean", "did you mean 'Borromean'?"),
@@ -55,7 +85,25 @@ def test_what_is_no_name_stays_as_it_is() -> None:
         ("L12n1", "the tables end with knots of 13 crossings and links of 11"),
         ("L5a1{0,1}", "braces have a 0 or 1 for each component after the first"),
         ("L5a1{2}", "braces have a 0 or 1"),
-        ("m3_2", "did you mean '3_1'?"),
+        ("m3_2", "unknown knot 'm3_2': there is only 'm3_1'"),
+        ("!8_22", "one of m8_1 to m8_21?"),
+        ("m12_5", "did you mean m12a_5 or m12n_5?"),
+        ("mhopff", "did you mean 'mHopf'?"),
+        ("grany", "did you mean 'granny'?"),
+        ("m31", "did you mean 'm3_1'?"),
+        ("figure nine", "unknown knot 'figure nine': known are"),
+        ("L0a1", "known are"),
+        ("4_1_1", "known are"),
+        ("5 2/3", "unknown knot '5 2/3': known are"),
+        ("[4,6,2]", "known are"),
+        ("m(3_1", "unknown knot 'm(3_1'"),
+        ("mirror imag of (3_1#4_1)", "unknown knot"),
+        ("T(2,3#4_1", "unknown knot 'T(2,3#4_1'"),
+        ("(3_1)(4_1)", "unknown knot '(3_1)(4_1)'"),
+        *[
+            (name, f"unknown knot {name!r}: a part has no name")
+            for name in ("m", "#3_1", "3_1#", "", "!", "m()")
+        ],
         ("8-20", "did you mean '8_20'?"),
         ("3_1#8_22", "one of 8_1 to 8_21?"),
     ],

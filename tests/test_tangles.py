@@ -9,7 +9,7 @@ from sono.invariants import fingerprint, homfly
 from sono.invariants.crossings import diagram, linking_matrix
 from sono.starts import has_variants, knows, start
 from sono.starts.diagrams import codes, reduced
-from sono.starts.tangles import conway, pretzel, two_bridge
+from sono.starts.tangles import conway, conway_terms, pretzel, two_bridge
 
 
 @pytest.mark.parametrize(
@@ -92,9 +92,29 @@ def test_all_of_knotinfo_are_as_handed_as_its_diagrams() -> None:
     assert counts["two-bridge"] > 150
 
 
+def test_conways_notation_of_knotinfo_is_that_of_its_diagrams_up_to_the_hand() -> None:
+    regina = pytest.importorskip("regina")
+    rows = pytest.importorskip("database_knotinfo").link_list()[2:]
+    rows = [row for row in rows if re.fullmatch(r"\[[\d ]+\]", row["conway_notation"])]
+    mirrored = []
+    for row in rows:
+        drawn = str(
+            regina.Link.fromPD(codes(reduced(conway(conway_terms(row["conway_notation"][1:-1]))))).homflyAZ()
+        )
+        known = regina.Link.fromPD(json.loads(row["pd_notation"]))
+        if drawn != str(known.homflyAZ()):
+            known.reflect()
+            assert drawn == str(known.homflyAZ()), row["name"]
+            mirrored.append(row["name"])
+    # Conway's notation does not tell the hand, of which KnotInfo has now one, now the other.
+    assert len(rows) > 300
+    assert len(mirrored) < len(rows) / 6
+    assert {"7_3", "7_4"} <= set(mirrored)
+
+
 def test_conways_notation_has_as_many_crossings_as_it_says() -> None:
-    for terms in ([3], [2, 2], [3, 1, 2], [2, 1, 1, 2], [4, 1, 3], [-3, -2]):
-        assert len(reduced(conway(terms)).far) == 4 * sum(map(abs, terms))
+    for turns in ([3], [2, 2], [3, 1, 2], [2, 1, 1, 2], [4, 1, 3], [-3, -2]):
+        assert len(reduced(conway(turns)).far) == 4 * sum(map(abs, turns))
 
 
 @pytest.mark.parametrize(

@@ -92,7 +92,7 @@ def row(name: str, found: "Identity") -> tables.Row:
 def _write_pd(name: str, found: "Identity", shown: options.Shown) -> None:
     """Write a PD code as KnotInfo does, on a line."""
     sys.stdout.write(str([list(code) for code in found.pd]).replace(" ", "") + "\n")
-    if found.circles:
+    if found.circles > (not found.pd):  # [] alone is read as a circle
         shown.tell(
             f"{name}: {found.circles} of {found.components} components have no crossings, and no trace here"
         )

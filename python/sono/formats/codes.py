@@ -25,7 +25,7 @@ _LABELLED = re.compile(r"(?:(?P<label>[^:\t]*?)\s*[:\t])?(?P<code>[^:]*)")
 
 _NUMBER = r"\s*\d+\s*"
 _CROSSING = rf"[XY]?[pm]?[\[({{]{_NUMBER}(?:,{_NUMBER}){{3}}[\])}}]"
-_PD = re.compile(rf"(?:[^:\t]*[:\t])?\s*(?:PD)?[\[({{\s]*{_CROSSING}")
+_PD = re.compile(rf"(?:[^:\t]*[:\t])?\s*(?:PD)?[\[({{\s]*(?:{_CROSSING}|\[\]$)")
 """How a line with a PD code begins."""
 
 

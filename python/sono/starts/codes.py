@@ -2,7 +2,7 @@
 
 A PD code ("pd:X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]") has for each crossing its four edges, counter-clockwise from
 the incoming lower one; so it tells the mirror images apart. Labels are any whole numbers, each at two places.
-P[1,2] joins two edges, Loop[1] is a circle without crossings.
+P[1,2] joins two edges, Loop[1] is a circle without crossings, and so is the empty code [].
 
 A DT code ("dt:4 6 2") has the even number of the crossing that is passed first, third, fifth, ...; a minus
 means that odd and even change places as upper and lower. A Gauss code ("gauss:1 -2 3 -1 2 -3") has
@@ -16,9 +16,8 @@ right-handed ones, a Gauss code tells: "gauss:O1+U2+O3+U1+O2+U3+", over and unde
 """
 
 import re
-from collections.abc import Sequence
 
-from sono.starts.diagrams import Code, Diagram, from_codes
+from sono.starts.diagrams import Diagram, check_twice, from_codes
 from sono.starts.embedding import embedded
 
 KINDS = {"pd": "PD", "dt": "DT", "gauss": "Gauss"}
@@ -42,10 +41,11 @@ def diagram(kind: str, text: str) -> Diagram:
     Raises ValueError for what is no such code, and for a code without a diagram in the plane.
     """
     read = {"pd": _pd, "dt": _dt, "gauss": _gauss}[kind]
+    text = " ".join(text.split())
     try:
-        return read(text.strip())
+        return read(text)
     except ValueError as error:
-        shown = text.strip() if len(text) < 80 else text.strip()[:75] + " ..."
+        shown = text if len(text) < 80 else text[:75] + " ..."
         raise ValueError(f"{KINDS[kind]} code {shown!r}: {error}") from error
 
 
@@ -53,6 +53,7 @@ def _pd(text: str) -> Diagram:
     # Knot Atlas writes X1425 where all labels have one digit.
     text = re.sub(r"X_?\{?(\d)(\d)(\d)(\d)\}?(?!\d)", r"X[\1,\2,\3,\4]", text)
     text = re.sub(r"PD\s*[\[(]", "[", text, flags=re.IGNORECASE)
+    circles = int(re.fullmatch(r"[\[({]\s*[\])}]", text) is not None)
     if not re.search(r"[\[({]", text):
         text = " ".join(f"({group})" for group in re.split(r"[;|]|(?<=\d)\s+(?=\S*,)", text))
     rest = _GROUP.sub("", text)
@@ -61,26 +62,31 @@ def _pd(text: str) -> Diagram:
     for letters, group in _GROUP.findall(text):
         numbers = _integers(group, "pd")
         letters = letters.casefold()
-        if (letters, len(numbers)) in (("p", 2), ("loop", 1)):
-            joined.append([numbers[0], numbers[-1]])
+        if (letters, len(numbers)) == ("p", 2):
+            joined.append(numbers)
+        elif (letters, len(numbers)) == ("loop", 1):
+            circles += 1
         elif letters in ("", "x", "xp", "xm") and len(numbers) % 4 == 0:
             crossings += [numbers[k : k + 4] for k in range(0, len(numbers), 4)]
         else:
             raise ValueError(f"{letters.upper()}[{group}] is no crossing, which has four edges")
-    if not [*crossings, *joined] or re.search(r"[^][(){},;\s]", rest):
+    if not (crossings or joined or circles) or re.search(r"[^][(){},;\s]", rest):
         raise _malformed("pd")
+    circles += _join(crossings, joined)
+    return from_codes([(a, b, c, d) for a, b, c, d in crossings], circles)
+
+
+def _join(crossings: list[list[int]], pairs: list[list[int]]) -> int:
+    """Join edges in pairs, as P[1,2] says, and return how many circles that closes. Raises ValueError."""
+    places = [edge for edges in (*crossings, *pairs) for edge in edges]
+    check_twice({edge: [edge] * places.count(edge) for pair in pairs for edge in pair})
     circles = 0
-    while joined:
-        one, other = joined.pop()
+    while pairs:
+        one, other = pairs.pop()
         circles += one == other
-        for edges in (*crossings, *joined):
+        for edges in (*crossings, *pairs):
             edges[:] = [one if edge == other else edge for edge in edges]
-    return from_codes([_code(edges) for edges in crossings], circles)
-
-
-def _code(edges: Sequence[int]) -> Code:
-    a, b, c, d = edges
-    return a, b, c, d
+    return circles
 
 
 def _dt(text: str) -> Diagram:

@@ -5,7 +5,7 @@
 (5, [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)])
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -93,14 +93,13 @@ def pieces(far: dict[Slot, Slot]) -> list[list[int]]:
     return found
 
 
-def planar(diagram: Diagram) -> Diagram:
-    """Return the diagram. Raises ValueError if there is none in the plane, or it has too many crossings."""
-    crossings = len(diagram.far) // 4
+def check_planar(far: dict[Slot, Slot]) -> None:
+    """Raise ValueError where edges cannot be drawn in the plane, or join too many crossings."""
+    crossings = len(far) // 4
     if crossings > MOST_CROSSINGS:
         raise ValueError(f"{crossings} crossings are too many to draw; {MOST_CROSSINGS} are the most")
-    if len(faces(diagram.far)) != crossings + 2 * len(pieces(diagram.far)):  # Euler's formula
+    if len(faces(far)) != crossings + 2 * len(pieces(far)):  # Euler's formula
         raise ValueError("no knot or link in space has this diagram: it cannot be drawn in the plane")
-    return diagram
 
 
 def from_codes(codes: Sequence[Code], circles: int = 0) -> Diagram:
@@ -115,11 +114,9 @@ def from_codes(codes: Sequence[Code], circles: int = 0) -> Diagram:
     for crossing, edges in enumerate(codes):
         for k, edge in enumerate(edges):
             ends.setdefault(edge, []).append((crossing, k))
-    for edge, slots in ends.items():
-        if len(slots) != 2:
-            many = "once" if len(slots) == 1 else f"{len(slots)} times"
-            raise ValueError(f"edge {edge} occurs {many} in the PD code; each edge has two ends")
+    check_twice(ends)
     far = {slot: other for one, two in ends.values() for slot, other in ((one, two), (two, one))}
+    check_planar(far)  # so that a component passes two crossings or more, or one twice
     begins: list[Slot | None] = []
     unseen = set(far)
     for edge in sorted(ends):
@@ -127,7 +124,15 @@ def from_codes(codes: Sequence[Code], circles: int = 0) -> Diagram:
             begins.append(_begin(far, codes, ends[edge]))
             entered = circuit(far, begins[-1])
             unseen -= {*entered, *map(across, entered)}
-    return planar(Diagram(far, [*begins, *(circles * [None])]))
+    return Diagram(far, [*begins, *(circles * [None])])
+
+
+def check_twice(ends: Mapping[int, Sequence[object]]) -> None:
+    """Raise ValueError where an edge has not two ends."""
+    for edge, places in ends.items():
+        if len(places) != 2:
+            many = "once" if len(places) == 1 else f"{len(places)} times"
+            raise ValueError(f"edge {edge} occurs {many} in the PD code; each edge has two ends")
 
 
 def _begin(far: dict[Slot, Slot], codes: Sequence[Code], ends: list[Slot]) -> Slot:

@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from sono.starts.diagrams import Diagram, Slot, planar
+from sono.starts.diagrams import Diagram, Slot, check_planar
 
 Passage: TypeAlias = tuple[int, bool]
 """A crossing, and whether it is passed above."""
@@ -44,7 +44,9 @@ def embedded(words: Sequence[Word], signs: dict[int, int] | None = None) -> Diag
         signs = {}
         for word in _merged(words):
             signs |= _signs(word, [crossing for crossing, _ in passages])
-    return planar(_joined(words, signs))
+    diagram = _joined(words, signs)
+    check_planar(diagram.far)
+    return diagram
 
 
 def _joined(words: Sequence[Word], signs: dict[int, int]) -> Diagram:

@@ -14,7 +14,7 @@ generator is a right-handed crossing, so 3_1 is the right-handed trefoil.
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 
 from sono.curve import Components
@@ -26,32 +26,37 @@ from sono.starts.flypes import flyped
 from sono.starts.links import link_names
 from sono.starts.planar import lifted
 from sono.starts.scramble import scramble
-from sono.starts.spelling import spelled, unknown
+from sono.starts.spelling import Part, spelled, summands, unknown
 from sono.starts.sums import EnclosedError, joined
 from sono.starts.tabled import conformation, is_tabled, table_row
 from sono.starts.tables import table
-from sono.starts.tangles import conway, pretzel, two_bridge
+from sono.starts.tangles import conway, conway_terms, pretzel, two_bridge
 from sono.starts.torus import chain, torus
 
 OUTSIDES = 20
 """Variants that are tried of a sum whose parts cannot be joined as they are drawn first."""
 
 _INTEGER = r"-?\d{1,999}"
-_INTEGERS = rf"{_INTEGER}(?:\s*,\s*{_INTEGER})*"
+_INTEGERS = rf"[(\[]({_INTEGER}(?:[\s,]+{_INTEGER})*)[)\]]"
 
 _CURVES: dict[str, Callable[[re.Match[str]], Components]] = {
     "unknot|0_1": lambda match: chain(1),
-    rf"T\s*\(({_INTEGER}),({_INTEGER})\)": lambda match: torus(int(match[1]), int(match[2])),
+    rf"T(?:orus\s*(?:Knot|Link))?\s*_?[(\[{{]({_INTEGER})[\s,]+({_INTEGER})[)\]}}]": lambda match: torus(
+        int(match[1]), int(match[2])
+    ),
     r"chain\s*(\d{1,999})": lambda match: chain(int(match[1])),
     rf"{_INTEGER}(?:[\s,]+{_INTEGER})+": lambda match: braid(_integers(match[0])),
 }
 """What is drawn as a curve: patterns, without spaces round commas and brackets, and what draws it."""
 
 _DIAGRAMS: dict[str, Callable[[re.Match[str]], Diagram]] = {
-    rf"({'|'.join(codes.KINDS)})\s*:(.*)": lambda match: codes.diagram(match[1].casefold(), match[2]),
-    rf"P\s*\(({_INTEGERS})\)": lambda match: pretzel(_integers(match[1])),
-    rf"C\s*\(({_INTEGERS})\)": lambda match: conway(_integers(match[1])),
-    rf"\[({_INTEGER}(?:\s+{_INTEGER})*)\]": lambda match: conway(_integers(match[1])),
+    rf"({'|'.join(codes.KINDS)})\s*(?:code\s*)?(?::|(?=[\[({{]))(.*)": lambda match: codes.diagram(
+        match[1].casefold(), match[2]
+    ),
+    r"X[pm]?_?[\[({\d].*|\[(?:[\[({].*)?\]": lambda match: codes.diagram("pd", match[0]),
+    rf"P\s*{_INTEGERS}": lambda match: pretzel(_integers(match[1])),
+    rf"C\s*{_INTEGERS}": lambda match: conway(_integers(match[1])),
+    rf"\[({_INTEGER}(?:\s+{_INTEGER})*)\]": lambda match: conway(conway_terms(match[1])),
     rf"({_INTEGER})/({_INTEGER})": lambda match: two_bridge(int(match[1]), int(match[2])),
 }
 """What is drawn from a planar diagram."""
@@ -66,12 +71,12 @@ def names() -> list[str]:
 
 def has_variants(name: str) -> bool:
     """Tell whether further variants of this name are more than scrambles of the plain one."""
-    return all(is_tabled(spelled(part)) or _matched(part, _DIAGRAMS) for part in _parts(name))
+    return all(map(_is_drawn, summands(name)))
 
 
 def knows(name: str) -> bool:
     """Tell whether this looks like the name of a knot, without drawing it."""
-    return all(is_tabled(spelled(part)) or _matched(part, [*_CURVES, *_DIAGRAMS]) for part in _parts(name))
+    return all(_is_drawn(part) or _matched(part.name, _CURVES) for part in summands(name))
 
 
 def start(name: str, variant: int = 0) -> Components:
@@ -91,31 +96,33 @@ def start(name: str, variant: int = 0) -> Components:
     the negative variants flype first. All others are
     isotopic scrambles. Raises ValueError, with the nearest known name, for anything else.
     """
-    first, *others = name.split("#")
-    if others:
-        return _sum(first, "#".join(others), variant)
-    plain = _closed_up(name)
-    if plain[:1].casefold() == "m":
-        return mirror(start(plain[1:], variant))
-    return _drawn(plain, variant)
+    parts = summands(name)
+    if not all(part.name for part in parts):
+        raise ValueError(f"unknown knot {name!r}: a part has no name; write it like m3_1 or 3_1#m4_1")
+    return _sum(parts, variant)
 
 
-def _sum(one: str, other: str, variant: int) -> Components:
+def _sum(parts: Sequence[Part], variant: int) -> Components:
     """Return a connected sum, of other variants where the first component of a part is inside of others."""
+    first, *others = parts
+    if not others:
+        curve = _drawn(first, variant)
+        return mirror(curve) if first.mirrored else curve
     variants = [variant]
-    if has_variants(one) and has_variants(other):
+    if all(map(_is_drawn, parts)):
         # Each is drawn from a diagram with another face outside.
         variants += range(-abs(variant) - 1, -abs(variant) - OUTSIDES, -1)
     for drawn in variants:
         with suppress(EnclosedError):
-            return joined(start(one, drawn), start(other, drawn), abs(variant))
+            return joined(_sum([first], drawn), _sum(others, drawn), abs(variant))
     raise EnclosedError(
-        f"{one}#{other}: the first component of a part is inside of others, so nothing joins it"
+        f"{'#'.join(map(str, parts))}: the first component of a part is inside of others, so nothing joins it"
     )
 
 
-def _drawn(name: str, variant: int) -> Components:
-    """Return a conformation of what has this name, which is neither a sum nor a mirror image."""
+def _drawn(part: Part, variant: int) -> Components:
+    """Return a conformation of what has a part's name, not yet mirrored."""
+    name = part.name
     if row := table_row(spelled(name)):
         return conformation(row, variant)
     if found := _matched(name, _DIAGRAMS):
@@ -124,7 +131,7 @@ def _drawn(name: str, variant: int) -> Components:
         return lifted(flyped(diagram, -variant) if variant < 0 else diagram, abs(variant))
     found = _matched(name, _CURVES)
     if not found:
-        raise unknown(spelled(name), names())
+        raise unknown(part, names())
     if variant < 0:
         raise ValueError(f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more")
     pattern, match = found
@@ -134,18 +141,14 @@ def _drawn(name: str, variant: int) -> Components:
 
 def _matched(name: str, patterns: Iterable[str]) -> tuple[str, re.Match[str]] | None:
     """Return the pattern that a name fits, and how."""
+    name = "0_1" if spelled(name) == "0_1" else re.sub(r"\s*([()\[\]{},/])\s*", r"\1", name)
     matches = ((pattern, re.fullmatch(pattern, name, re.IGNORECASE | re.DOTALL)) for pattern in patterns)
     return next(((pattern, match) for pattern, match in matches if match), None)
 
 
-def _parts(name: str) -> list[str]:
-    """Return the names of the summands, each without the m of a mirror image."""
-    return [re.sub("^m+", "", _closed_up(part), flags=re.IGNORECASE) for part in name.split("#")]
-
-
-def _closed_up(name: str) -> str:
-    """Return the name without space at its ends and round brackets and commas."""
-    return re.sub(r"\s*([(),/])\s*", r"\1", name.strip())
+def _is_drawn(part: Part) -> bool:
+    """Tell whether this looks like the name of something that has a planar diagram."""
+    return bool(is_tabled(spelled(part.name)) or _matched(part.name, _DIAGRAMS))
 
 
 def _integers(text: str) -> list[int]:

@@ -10,6 +10,7 @@ is the mirror image of 7/3. Conway's notation C(a,b,...,z) is that of the fracti
 """
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -69,6 +70,17 @@ def conway(terms: Sequence[int]) -> Diagram:
             tangle = crossing if tangle is None else (_beside if across else _below)(tangle, crossing)
     assert tangle
     return _closed(tangle)
+
+
+def conway_terms(text: str) -> list[int]:
+    """Return the terms of Conway's notation, where digits without spaces are one each, as he wrote them.
+
+    Only 10 to 19 alone are one number, as KnotInfo has them: no reduced notation begins with 1.
+
+    >>> conway_terms("312"), conway_terms("10 2"), conway_terms("11")
+    ([3, 1, 2], [10, 2], [11])
+    """
+    return [*map(int, text)] if re.fullmatch(r"[2-9]\d|\d{3,}", text) else [*map(int, text.split())]
 
 
 def _check(terms: Sequence[int], name: str) -> None:
