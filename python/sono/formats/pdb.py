@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from sono._core import CurveError
 from sono.curve import measure
+from sono.formats.boxes import Box
 from sono.formats.molecules import Atom, Bonds, Model, curves
 from sono.formats.vertices import FormatError, Raw, shown
 
@@ -37,7 +38,7 @@ REMARK = "REMARK 999"
 THIN = 0.005
 """A curve whose rope has a smaller radius might change its type when its coordinates are rounded."""
 
-_RECORD = re.compile(r"HETATM|CONECT|(ATOM|MODEL|ENDMDL|END|TER|LINK)(?![A-Z])")
+_RECORD = re.compile(r"HETATM|CONECT|(ATOM|MODEL|ENDMDL|END|TER|LINK|CRYST1)(?![A-Z])")
 _FIRST = re.compile(r"(ATOM|HEADER|MODEL|REMARK) |HETATM|CRYST1")
 _NUMBER = re.compile(r"-?\w+")
 _DECIMAL = re.compile(r"[+-]?\d*\.\d*(e[+-]?\d+)?|[+-]?(nan|inf)", re.IGNORECASE)
@@ -57,7 +58,7 @@ def read(text: str, name: str) -> list[Raw]:
         raise FormatError.at(
             name, 1, "the file holds no ATOM or HETATM; a PDB file begins each atom's line so"
         )
-    models = [Model(model.key, model.atoms, file.bonds(model)) for model in file.models]
+    models = [Model(model.key, model.atoms, file.bonds(model), file.box) for model in file.models]
     return [replace(raw, comments=file.comments) for raw in curves(models, name)]
 
 
@@ -79,6 +80,7 @@ class _File:
         self._part = 0
         self._ended = True
         self._key = ""
+        self.box: Box | None = None
         self.comments: list[str] = []
         self._links: list[tuple[tuple[str, str, str], tuple[str, str, str]]] = []
         self._connected: list[str] = []
@@ -106,6 +108,8 @@ class _File:
             self.comments.append(line.removeprefix(REMARK).strip())
         elif record == "CONECT":
             self._connected.append(line)
+        elif record == "CRYST1":
+            self.box = _box(line)
         elif record == "LINK":
             self._links.append((_site(line, 12), _site(line, 42)))
 
@@ -164,6 +168,15 @@ class _File:
             if one in model.sites and other in model.sites:
                 found.add(frozenset((model.sites[one], model.sites[other])))
         return found
+
+
+def _box(line: str) -> Box | None:
+    """Read the unit cell, or nothing where there is none, as for structures that are no crystals."""
+    try:
+        sides, angles = np.array(line[6:54].split(), float).reshape(2, 3)
+        return Box.of_angles(sides, angles)
+    except ValueError:
+        return None
 
 
 def _site(line: str, at: int) -> tuple[str, str, str]:

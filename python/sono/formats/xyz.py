@@ -8,26 +8,32 @@
 
 Each frame is a curve, with the number of the frame as its key. Columns beyond x y z are read over, unless the
 comment is that of extended XYZ: `Properties=id:I:1:species:S:1:pos:R:3` says where the coordinates are, and
-where an index or a component. Without that one the ends of a chain decide whether it is closed. What is
+where an index or a component. A periodic box, `Lattice="9 0 0 0 9 0 0 0 9" pbc="T T T"`, unwraps the chains
+that it has wrapped. Without components the ends of a chain decide whether it is closed. What is
 written here says how many vertices each component has. Source of the extension: the ASE and OVITO manuals.
 """
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sono.formats.boxes import APART, Box, rejoined
 from sono.formats.columns import Parts
 from sono.formats.doubts import gaps
 from sono.formats.layouts import Layout
-from sono.formats.vertices import Chain, FormatError, Raw, shown
+from sono.formats.simulated import BY_NEAREST
+from sono.formats.vertices import Chain, FormatError, Raw, numbers, shown
 
 _COUNT = re.compile(r"\s*\d+\s*(\n|$)")
 _SIZES = re.compile(r'(?:^|\s)components="([\d ]*)"')
 _COMMENT = re.compile(r'(?:^|\s)comment="((?:[^"\\]|\\.)*)"')
 _PROPERTIES = re.compile(r'(?:^|\s)Properties="?([^\s"]+)', re.IGNORECASE)
+_LATTICE = re.compile(r'(?:^|\s)Lattice="([^"]*)"', re.IGNORECASE)
+_PERIODIC = re.compile(r'(?:^|\s)pbc="([^"]*)"', re.IGNORECASE)
 
 BETWEEN = " | "
 """Stands between the comments, which share a line."""
@@ -82,12 +88,42 @@ def _frame(lines: Sequence[str], name: str, first: int, key: str) -> Raw:
         except ValueError as error:
             raise FormatError.at(name, number, str(error)) from None
     chains, notes = parts.chains(None), list[str]()
+    if box := _box(comment, name, first + 1):
+        chains, notes = _whole(chains, box, name)
     if len(chains) == 1 and (sizes := _SIZES.search(comment)):
         chains = _apart(chains, [int(size[:18]) for size in sizes[1].split()], name, first + 1)
     else:
-        notes = [_doubt(chain, place, name) for chain in chains for place in gaps(np.array(chain.rows))]
+        notes += [_doubt(chain, place, name) for chain in chains for place in gaps(np.array(chain.rows))]
     said = re.sub(r"\\(.)", r"\1", ours[1]).split(BETWEEN) if ours else [comment.strip()]
     return Raw(chains, key, notes, [line for line in said if line])
+
+
+def _box(comment: str, name: str, line: int) -> Box | None:
+    """Give the periodic box, if the comment tells one."""
+    lattice, marks = _LATTICE.search(comment), _PERIODIC.search(comment)
+    periodic = np.array([mark[0] in "Tt1" for mark in marks[1].split()] if marks else [True] * 3)
+    if not lattice or not periodic.any():
+        return None
+    try:
+        edges = np.array(numbers(lattice[1].split())).reshape(3, 3)
+        if not edges.any():  # as it is written where there is no box
+            return None
+        if not np.isfinite(edges).all() or np.linalg.det(edges) == 0 or len(periodic) != 3:
+            raise ValueError
+    except ValueError:
+        cure = 'give nine numbers, and pbc="T T T" or which of the three are not periodic'
+        raise FormatError.at(name, line, f"{shown(lattice[1])} is no periodic box; {cure}") from None
+    return Box(np.zeros(3), edges, periodic)
+
+
+def _whole(chains: Sequence[Chain], box: Box, name: str) -> tuple[list[Chain], list[str]]:
+    """Put together the chains that the box has wrapped, and tell of it."""
+    rows = [np.array(chain.rows) for chain in chains]
+    moved = [rejoined(box, part, name, chain.lines) for part, chain in zip(rows, chains, strict=True)]
+    told = any(a is not b for a, b in zip(rows, moved, strict=True))
+    whole = [replace(chain, rows=part) for chain, part in zip(chains, moved, strict=True)]
+    notes = [BY_NEAREST, APART] if len(chains) > 1 else [BY_NEAREST]
+    return whole, [f"{name}: {note}" for note in notes] if told else []
 
 
 def _doubt(chain: Chain, place: int, name: str) -> str:
