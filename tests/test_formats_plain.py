@@ -142,6 +142,40 @@ def test_npy_has_components_of_one_size(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def saved(**arrays: object) -> bytes:
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)  # type: ignore[arg-type]
+    return stream.getvalue()
+
+
+BESIDE = [
+    {"box": np.ones(3)},
+    {"box": np.eye(3), "n": 4},
+    {"names": np.array(["a", "b"]), "bounds": np.zeros((2, 3)), "distances": np.zeros((4, 4))},
+    {"empty": np.zeros((0, 3)), "flags": np.zeros((4, 3), bool)},
+]
+
+
+@pytest.mark.parametrize("beside", BESIDE)
+@pytest.mark.parametrize("coords", [POINTS, [POINTS, POINTS]])
+def test_arrays_beside_the_curve_are_left_out(beside: dict[str, object], coords: list[Any]) -> None:
+    content = saved(**beside, coords=coords)
+    assert np.array_equal(lists("k.npz", content), np.reshape(coords, (-1, 4, 3)))
+    left = f"k.npz: left out the arrays {', '.join(beside)}, which are no curves"
+    assert parsed("k.npz", content).notes[-1] == left
+
+
+def test_arrays_of_an_npz_are_a_link_or_one_is_chosen(tmp_path: Path) -> None:
+    (tmp_path / "k.npz").write_bytes(saved(one=POINTS, two=OTHER, box=np.ones(3)))
+    curve = formats.read(tmp_path / "k.npz")
+    assert len(curve.components) == 2
+    assert "was read as a link of 2 components, the arrays one, two; " in curve.notes[0]
+    assert [part.tolist() for part in formats.read(f"{tmp_path}/k.npz:two").components] == [OTHER]
+    with pytest.raises(FormatError, match="holds no curve 'box'; there are: one, two"):
+        formats.read(f"{tmp_path}/k.npz:box")
+    assert parsed("k.npz", npz.write([np.array(POINTS), np.array(OTHER)], [])).notes == []
+
+
 def test_npz() -> None:
     for save in (np.savez, np.savez_compressed):
         stream = io.BytesIO()

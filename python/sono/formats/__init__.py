@@ -196,6 +196,7 @@ def raws(source: str | os.PathLike[str]) -> tuple[str, Sequence[Raw]]:
     found = _unchecked(name, data)
     if key is None:
         return name, found
+    found = found[0].parts or found
     if chosen := [raw for raw in found if raw.key == key]:
         return name, chosen
     keys = _listed(found) or "no others"
