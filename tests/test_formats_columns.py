@@ -28,6 +28,7 @@ def rows(template: str, first: int = 1) -> str:
         *("{} {} {} {}", "{}\t{}\t{}\t{}", "{}, {}, {}, {}", "{};{};{};{}", "{}.0 {} {} {}", "{:e} {} {} {}"),
         *("C {1} {2} {3}", "ca,{1},{2},{3}", "C1\t{1} {2} {3}", "C {} {} {} {}", "{} C {} {} {}"),
         *("{1};{2};{3}", '"{1}","{2}","{3}"', '"{}" "{}" "{}" "{}"'),
+        *('"bead one",{1},{2},{3}', "bead one\t{1}\t{2}\t{3}", "C {1}, {2}, {3}", "bead one; {1}; {2}; {3}"),
     ],
 )
 def test_leading_columns(template: str, first: int) -> None:
@@ -55,6 +56,11 @@ def test_leading_columns(template: str, first: int) -> None:
         ("x y z", "{1} {2} {3}"),
         ("x,y,z,", "{1},{2},{3},"),
         ("x_nm,y_nm,z_nm", "{1},{2},{3}"),
+        ("residue name,x,y,z", "ALA 1,{1},{2},{3}"),
+        ("x,y,z,what it is", '{1},{2},{3},"a bead, blue"'),
+        ("bead name;x;y;z", "bead one;{1};{2};{3}"),
+        ("bead name\tx\ty\tz", "bead {0}\t{1}\t{2}\t{3}"),
+        ("pos x,pos y,pos z", "{1},{2},{3}"),
         ("x-coord y-coord z-coord", "{1} {2} {3}"),
     ],
 )
