@@ -226,3 +226,27 @@ def test_what_a_box_cannot_tell_is_refused() -> None:
         parsed(boxed(sticks, np.eye(3) * 10))
     with pytest.raises(FormatError, match=r"^k.xyz:2: '1 2' is no periodic box; give nine numbers"):
         parsed(frame('Lattice="1 2" Properties=species:S:1:pos:R:3'))
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (frame().replace("C -1.0 0.0 2.0", "C -1.0 0.0"), "12: 3 columns, where the first row has 4"),
+        (frame().replace("C -1.0 0.0 2.0", "C -1.0 nought 2.0"), "12: 'nought' is not a number"),
+        (frame().replace("C -1.0 0.0 2.0\n", ""), "7: 4 rows should follow, there are 3; correct the count"),
+        (frame().replace("4", "3", 1), "12: 'C -1.0 0.0 2.0' is no count of rows"),
+        (frame().replace("4", "9", 1), "7: 9 rows should follow, there are 4"),
+        (frame().replace("4", "0", 1), "7: '0' is no count of rows"),
+        (frame("Properties=pos:R:2"), "9: the comment's Properties are not"),
+    ],
+)
+@pytest.mark.parametrize("last", [False, True])
+def test_a_frame_that_is_wrong_spoils_no_other(bad: str, message: str, last: bool) -> None:
+    found = xyz.read(frame() + bad + ("" if last else frame("3") + frame()), "k.xyz")
+    assert [raw.key for raw in found] == ["1", "2", "3", "4"][: len(found)]
+    assert len(found) == (2 if last else 4)
+    for place, raw in enumerate(found):
+        if place != 1:
+            assert VertexFile.checked("k.xyz", raw).components[0].tolist() == POINTS
+    with pytest.raises(FormatError, match=rf"^k\.xyz:{re.escape(message)}"):
+        VertexFile.checked("k.xyz", found[1])

@@ -16,6 +16,7 @@ written here says how many vertices each component has. Source of the extension:
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import accumulate
 
 import numpy as np
@@ -25,6 +26,7 @@ from sono.formats.boxes import APART, Box, rejoined
 from sono.formats.columns import Parts
 from sono.formats.doubts import gaps
 from sono.formats.layouts import Layout
+from sono.formats.refused import attempted
 from sono.formats.simulated import BY_NEAREST
 from sono.formats.vertices import Chain, FormatError, Raw, numbers, shown
 
@@ -45,26 +47,39 @@ def recognises(text: str) -> bool:
 
 
 def read(text: str, name: str) -> list[Raw]:
-    """Parse all frames; lengths keep the file's unit. Raises `FormatError`."""
+    """Parse all frames; lengths keep the file's unit. Raises `FormatError`.
+
+    A frame that is wrong spoils no other: its error is raised by its chains.
+    """
     lines = text.rstrip().split("\n")
-    frames = []
-    first = 0
-    while first < len(lines):
-        if not lines[first].strip():
-            first += 1
-            continue
-        count = _count(lines[first], name, first + 1)
-        frames.append((first, count))
-        first += 2 + count
-    if first > len(lines):
-        message = (
-            f"{count} rows should follow, there are {max(0, count + len(lines) - first)}; correct the count"
-        )
-        raise FormatError.at(name, frames[-1][0] + 1, f"{message}, or complete the file")
+    starts = _starts(lines)
+    keys = [str(number) if len(starts) > 1 else "" for number in range(1, len(starts) + 1)]
     return [
-        _frame(lines[first : first + 2 + count], name, first + 1, str(number) if len(frames) > 1 else "")
-        for number, (first, count) in enumerate(frames, 1)
+        attempted(partial(_frame, lines[first:after], name, first + 1, key), key)
+        for key, first, after in zip(keys, starts, [*starts[1:], len(lines)], strict=True)
     ]
+
+
+def _starts(lines: Sequence[str]) -> list[int]:
+    """Find where frames begin: at a number alone, since no row is one, or at the first line with anything."""
+    starts = [next(place for place, line in enumerate(lines) if line.strip() or place == len(lines) - 1)]
+    for place, line in enumerate(lines):
+        if place > starts[-1] + 1 and line.strip().isdecimal():  # a comment may be a number, too
+            starts.append(place)
+    return starts
+
+
+def _rows(lines: Sequence[str], name: str, first: int) -> Sequence[str]:
+    """Give the rows of a frame, as many as it says. Raises `FormatError`."""
+    count = _count(lines[0], name, first)
+    there = len("\n".join(lines).rstrip().split("\n")) - 2
+    if there < count:
+        message = f"{count} rows should follow, there are {max(0, there)}; correct the count"
+        raise FormatError.at(name, first, f"{message}, or complete the file")
+    if there > count:
+        number = next(number for number in range(2 + count, len(lines)) if lines[number].strip())
+        _count(lines[number], name, first + number)
+    return lines[2 : 2 + count]
 
 
 def _count(line: str, name: str, number: int) -> int:
@@ -77,11 +92,12 @@ def _count(line: str, name: str, number: int) -> int:
 
 def _frame(lines: Sequence[str], name: str, first: int, key: str) -> Raw:
     """Read a frame whose count stands on the line `first`."""
+    rows = _rows(lines, name, first)
     ours = _COMMENT.search(lines[1])
     comment = _COMMENT.sub("", lines[1])
     parts = Parts()
     layout: Layout | None = None
-    for number, line in enumerate(lines[2:], first + 2):
+    for number, line in enumerate(rows, first + 2):
         try:
             layout = layout or _layout(comment, line.split())
             parts.add(layout, line.split(), number)
