@@ -1,7 +1,9 @@
 """Rows with an index, an element or a header: what is read, and what is refused rather than guessed."""
 
 import re
+from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -120,6 +122,18 @@ def test_a_comment_may_be_the_header_of_more_columns() -> None:
     assert parsed("# model of a knot\n" + rows("{} {} {} {}")) == [POINTS]
     assert parsed("# x, y, z, tension\n" + rows("{1}, {2}, {3}, 0.5")) == [POINTS]
     assert parsed("# z y x\n" + rows("{1} {2} {3}")) == [POINTS]  # three columns are x y z whatever is said
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_csv_is_written(tmp_path: Path, count: int) -> None:
+    parts = [np.array(POINTS) + 7 * k for k in range(count)]
+    formats.write(tmp_path / "k.csv", parts, ["a: knot", "x,y,z"])
+    header = "x,y,z" if count == 1 else "component,x,y,z"
+    first = "0.0,0.0,0.0" if count == 1 else "1,0.0,0.0,0.0"
+    assert (tmp_path / "k.csv").read_text().splitlines()[2:4] == [header, first]
+    curve = formats.read(tmp_path / "k.csv")
+    assert [part.tolist() for part in curve.components] == [part.tolist() for part in parts]
+    assert curve.comments == ["a: knot", "x,y,z"]
 
 
 def test_tables_may_be_joined() -> None:

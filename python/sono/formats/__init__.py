@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from sono.formats import (
     codes,
+    commas,
     coords,
     fseries,
     ideal,
@@ -127,6 +128,7 @@ WRITERS: dict[str, Writer] = {
     "npz": npz,
     "lammps": lammps,
     "pdb": pdb,
+    "csv": commas,
     "text": text,
 }
 
@@ -140,6 +142,7 @@ SUFFIXES = {
     "": "text",
     ".txt": "text",
     ".dat": "text",
+    ".csv": "csv",
     ".xyz": "xyz",
     ".vect": "vect",
     ".obj": "obj",
@@ -161,8 +164,8 @@ SUFFIXES = {
 }
 """The format of a file by its suffix."""
 
-LOOSE = {PLAIN, "xyz"}
-"""The formats whose suffixes say little of what is in a file: plain rows are called .xyz as well."""
+LOOSE = {PLAIN, "xyz", "csv"}
+"""The formats whose suffixes say little of what is in a file: plain rows are called .xyz and .csv as well."""
 
 
 def read(source: str | os.PathLike[str], close: Close | None = None) -> VertexFile:
