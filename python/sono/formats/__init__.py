@@ -19,10 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import (
+    brackets,
     codes,
     commas,
     coords,
     fseries,
+    gro,
     ideal,
     jsons,
     knotplot,
@@ -102,10 +104,12 @@ READERS: dict[str, Reader] = {
     "xyz": xyz,
     "obj": obj,
     "codes": codes,  # ahead of JSON, whose brackets they may have
+    "brackets": brackets,
     "json": jsons,
     "lammpstrj": lammpstrj,
     "lammps": lammps,
     "pdb": pdb,
+    "gro": gro,
     "mmcif": mmcif,
     "ideal": ideal,
     "fseries": fseries,
@@ -116,7 +120,7 @@ READERS: dict[str, Reader] = {
 
 BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz, "knotplot": knotplot}
 
-SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps", "fseries", "pkf", "coords", "knotplot"}
+SINGLE = {*BINARY, "text", "brackets", "vect", "obj", "json", "lammps", "fseries", "pkf", "coords"}
 """The formats whose files hold one curve; into others a batch looks before it begins."""
 
 WRITERS: dict[str, Writer] = {
@@ -154,13 +158,11 @@ SUFFIXES = {
     ".data": "lammps",
     ".pdb": "pdb",
     ".ent": "pdb",
-    ".cif": "mmcif",
-    ".mmcif": "mmcif",
+    ".gro": "gro",
+    **dict.fromkeys((".cif", ".mmcif"), "mmcif"),
     ".fseries": "fseries",
     ".pkf": "pkf",
-    ".pd": "codes",
-    ".dt": "codes",
-    ".gauss": "codes",
+    **dict.fromkeys((".pd", ".dt", ".gauss"), "codes"),
 }
 """The format of a file by its suffix."""
 

@@ -144,6 +144,8 @@ def comma(cell: str) -> str:
 
 def wrong(data: str) -> str:
     """Say what is wrong with a row of a file without a header."""
+    if data.startswith("<"):
+        return "of XML only ideal knots, with Coeff in them, are read; give rows of three numbers x y z"
     words = data.split(";") if ";" in data else data.split()
     if len(words) > 2 and (cell := next(filter(_DECIMAL_COMMA.fullmatch, map(str.strip, words)), None)):
         return comma(cell)
