@@ -179,6 +179,19 @@ def test_models_are_curves() -> None:
     assert [raw.key for raw in raws(models(two, two))] == ["1:A", "1:B", "2:A", "2:B"]
 
 
+@pytest.mark.parametrize("place", [0, 1, 2])
+@pytest.mark.parametrize("rows", [KNOT, OPEN], ids=["closed", "open"])
+def test_a_model_that_is_wrong_spoils_no_other(place: int, rows: Floats) -> None:
+    contents = [trace(rows)] * 3
+    contents[place] = contents[place].replace("ALA A   7 ", "ALA A  left", 1).replace(".", "", 1)
+    found = raws(models(*contents))
+    for number, raw in enumerate(found):
+        if number != place:
+            assert close(VertexFile.checked("k.pdb", raw, "direct"), [rows]) or rows is OPEN
+    with pytest.raises(FormatError, match=r"^k\.pdb:\d+: there are no x y z with decimals"):
+        VertexFile.checked("k.pdb", found[place], "direct")
+
+
 def test_segments_are_chains_where_these_have_no_ids() -> None:
     rows = [row.rstrip("\n")[:66].ljust(72) for row in trace(OPEN, chain=" ").splitlines()]
     content = "".join(f"{row}{segment}\n" for segment in ("PROA", "PROB") for row in rows)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sono.formats.bonds import against, along
 from sono.formats.boxes import APART, Box, rejoined, second_chain
 from sono.formats.doubts import LONGEST, closing_edge
-from sono.formats.refused import attempted
+from sono.formats.refused import Refused, attempted
 from sono.formats.simulated import BY_NEAREST
 from sono.formats.vertices import SHOWN, Chain, FormatError, Raw
 
@@ -55,12 +55,16 @@ class Atom:
 
 @dataclass(frozen=True)
 class Model:
-    """A model: its atoms, the bonds between them as pairs of places in that list, and the periodic box."""
+    """A model: its atoms, the bonds between them as pairs of places in that list, and the periodic box.
+
+    Of one that is `wrong` the error is all that is wanted.
+    """
 
     key: str
     atoms: Sequence[Atom]
     bonds: Bonds
     box: Box | None = None
+    wrong: FormatError | None = None
 
 
 @np.errstate(all="ignore")  # what is not finite is refused later on
@@ -69,16 +73,18 @@ def curves(models: Sequence[Model], name: str) -> list[Raw]:
 
     A chain that is wrong spoils no open one: its error is raised by its chains.
     """
-    traces = [_traces(model, name) for model in models]
+    traces = [[] if model.wrong else _traces(model, name) for model in models]
     links = all(trace.closed for several in traces for trace in several)
     found: list[Raw] = []
     for model, several in zip(models, traces, strict=True):
-        if links:
+        if model.wrong:
+            found.append(Raw(Refused(model.wrong), model.key))
+        elif links:
             found.append(attempted(partial(_link, several, model.key), model.key))
-            continue
-        for chain, trace in zip(_keys(several), several, strict=True):
-            key = f"{model.key}:{chain}" if len(models) > 1 else chain
-            found.append(attempted(partial(_link, [trace], key), key))
+        else:
+            for chain, trace in zip(_keys(several), several, strict=True):
+                key = f"{model.key}:{chain}" if len(models) > 1 else chain
+                found.append(attempted(partial(_link, [trace], key), key))
     return found if len(found) > 1 else [replace(found[0], key="")]
 
 

@@ -58,7 +58,9 @@ def read(text: str, name: str) -> list[Raw]:
         raise FormatError.at(
             name, 1, "the file holds no ATOM or HETATM; a PDB file begins each atom's line so"
         )
-    models = [Model(model.key, model.atoms, file.bonds(model), file.box) for model in file.models]
+    models = [
+        Model(found.key, found.atoms, file.bonds(found), file.box, found.wrong) for found in file.models
+    ]
     return [replace(raw, comments=file.comments) for raw in curves(models, name)]
 
 
@@ -70,6 +72,13 @@ class _Found:
     atoms: list[Atom] = field(default_factory=list)
     serials: dict[str, int] = field(default_factory=dict)
     sites: dict[tuple[str, str, str], int] = field(default_factory=dict)
+    wrong: FormatError | None = None
+
+    def add(self, serial: str, atom: Atom) -> None:
+        """Take an atom."""
+        self.serials.setdefault(serial, len(self.atoms))
+        self.sites.setdefault((atom.chain, atom.number, atom.name), len(self.atoms))
+        self.atoms.append(atom)
 
 
 class _File:
@@ -90,14 +99,13 @@ class _File:
         found = _RECORD.match(line)
         record = found[0] if found else ""
         if record in ("ATOM", "HETATM"):
-            serial, atom = self._atom(line, number)
             if self._ended:
                 self.models.append(_Found(self._key or str(len(self.models) + 1)))
             self._ended = False
-            model = self.models[-1]
-            model.serials.setdefault(serial, len(model.atoms))
-            model.sites.setdefault((atom.chain, atom.number, atom.name), len(model.atoms))
-            model.atoms.append(atom)
+            try:
+                self.models[-1].add(*self._atom(line, number))
+            except FormatError as error:  # which spoils no other model
+                self.models[-1].wrong = self.models[-1].wrong or error
         elif record == "MODEL":
             self._ended, self._key = True, line[5:].strip()
         elif record in ("ENDMDL", "END"):  # some programs end frames, but begin none
@@ -114,7 +122,7 @@ class _File:
             self._links.append((_site(line, 12), _site(line, 42)))
 
     def _atom(self, line: str, number: int) -> tuple[str, Atom]:
-        """Read a row by its columns, or else by its words."""
+        """Read a row by its columns, or else by its words. Raises `FormatError`."""
         cells = [line[column : column + 8].strip() for column in (30, 38, 46)]
         if line[27:30].strip() or not all(_DECIMAL.fullmatch(cell) for cell in cells):
             return self._free(line, number)
