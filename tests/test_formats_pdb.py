@@ -365,6 +365,14 @@ def test_a_unit_cell_unwraps_what_it_has_wrapped(name: str, angles: tuple[float,
     assert close(curve, [KNOT])
 
 
+def test_a_ring_round_the_cell_is_refused_but_no_chain_that_touches_its_image() -> None:
+    rows = np.column_stack([np.arange(20) * 3.8, 3 * np.sin(np.arange(20) * np.pi / 10), np.zeros(20)])
+    text = "CRYST1   76.000   76.000   76.000  90.00  90.00  90.00 P 1\n" + trace(rows)
+    assert [chain.closed for chain in raws(text)[0].chains] == [False]
+    with pytest.raises(FormatError, match=r"^k\.pdb:21: the chain winds round the periodic box"):
+        read(text + "CONECT    1   20\n")
+
+
 @pytest.mark.parametrize("sides", ["    1.000" * 3, "    0.000" * 3, "    8.000" * 3, "", "     left" * 3])
 def test_a_cell_that_is_none_changes_nothing(sides: str) -> None:
     (curve,) = read(f"CRYST1{sides}  90.00  90.00  90.00 P 1\n" + trace(KNOT))

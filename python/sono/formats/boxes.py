@@ -85,11 +85,11 @@ def unwrapped(box: Box, rows: Floats, name: str, lines: Lines) -> Floats:
     return rows - np.vstack([np.zeros(3), np.cumsum(through, axis=0)]) @ box.edges
 
 
-def rejoined(box: Box, rows: Floats, name: str, lines: Lines) -> Floats:
+def rejoined(box: Box, rows: Floats, name: str, lines: Lines, ring: bool = True) -> Floats:
     """Give a chain (n, 3) that its box has wrapped as `unwrapped` does, and any other as it is.
 
     A file may tell the box of chains that were never wrapped. Raises `FormatError` for a chain of which it is
-    not clear whether it was, and for a ring that winds round the box.
+    not clear whether it was, and for what may be a `ring` and winds round the box.
     """
     fits = np.ptp(rows @ np.linalg.inv(box.edges), axis=0) <= FITS
     box = replace(box, periodic=box.periodic & fits)
@@ -102,7 +102,8 @@ def rejoined(box: Box, rows: Floats, name: str, lines: Lines) -> Floats:
             "the step to this atom is longer than half the periodic box, which may have wrapped the chain, "
             "or not; write unwrapped coordinates, and leave out the box",
         )
-    refuse_winding(box, whole, name, lines)
+    if ring or jumping.any():  # in crystals the end of a chain may well touch an image of its beginning
+        refuse_winding(box, whole, name, lines)
     return whole
 
 

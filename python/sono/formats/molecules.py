@@ -180,7 +180,8 @@ class _Trace:
     def _unwrap(self, box: Box) -> None:
         """Put the chain together if the box has wrapped it; an error waits for who wants the chain."""
         try:
-            whole = rejoined(box, self._rows, self.name, [atom.line for atom in self.atoms])
+            lines = [atom.line for atom in self.atoms]
+            whole = rejoined(box, self._rows, self.name, lines, self._bonded)
         except FormatError as error:
             self._wrong = error
             return
