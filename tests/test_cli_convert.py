@@ -9,7 +9,7 @@ from conftest import Sono
 from sono import formats, starts
 from sono.formats import xyz
 
-SUFFIXES = ["txt", "dat", "xyz", "vect", "obj", "json", "npz", "vect.gz"]
+SUFFIXES = ["txt", "dat", "csv", "xyz", "vect", "obj", "json", "npz", "vect.gz"]
 
 
 @pytest.fixture
@@ -55,7 +55,10 @@ def test_nothing_is_overwritten_unasked(sono: Sono) -> None:
     ("arguments", "message"),
     [
         (["3_1.txt", "k.stl"], "k.stl: .stl is no format for vertices; the suffixes are: .txt"),
-        (["3_1.txt", "-", "--format", "stl"], "--format stl: is no format that is written; there are: json"),
+        (
+            ["3_1.txt", "-", "--format", "stl"],
+            "--format stl: is no format that is written; there are: csv, json",
+        ),
         (["3_1.txt", "k.txt", "--close", "loose"], "'--close'"),
         (["3_1.txt"], "Missing argument 'OUT'"),
     ],

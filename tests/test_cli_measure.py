@@ -75,7 +75,8 @@ WRONG = {
     "open": ("VECT\n1 3 0\n3\n0\n0 0 0\n1 0 0\n0 1 0\n", ":7: the chain is open"),
     "huge": ("0 0 0\n1e200 0 0\n0 1e200 1e200\n", ":2: vertex 1 of component 0 is not finite"),
     "empty": ("", ":1: the file holds no vertices"),
-    "binary": ("\xff\xfe\0\0", ":1: byte 0xff is not UTF-8 text"),
+    "utf-16": ("\xff\xfe\0\0", ":1: this is UTF-16 text, or none; save it as UTF-8"),
+    "binary": ("\x80\xff\0\0", ":1: byte 0x80 is not UTF-8 text"),
 }
 
 

@@ -140,7 +140,7 @@ def test_what_fortran_does_not_write(word: str) -> None:
         parsed(f"{word} 0 0\n1 0 0\n0 1 0\n")
 
 
-@pytest.mark.parametrize("suffix", ["stl", "png", "csv", "n480"])
+@pytest.mark.parametrize("suffix", ["stl", "png", "xls", "n480"])
 def test_a_suffix_of_no_format_is_not_written(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"k.{suffix}"
     with pytest.raises(FormatError, match=rf"k\.{suffix}: \.{suffix} is no format for vertices"):

@@ -1,7 +1,9 @@
 """Rows with an index, an element or a header: what is read, and what is refused rather than guessed."""
 
 import re
+from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -28,6 +30,7 @@ def rows(template: str, first: int = 1) -> str:
         *("{} {} {} {}", "{}\t{}\t{}\t{}", "{}, {}, {}, {}", "{};{};{};{}", "{}.0 {} {} {}", "{:e} {} {} {}"),
         *("C {1} {2} {3}", "ca,{1},{2},{3}", "C1\t{1} {2} {3}", "C {} {} {} {}", "{} C {} {} {}"),
         *("{1};{2};{3}", '"{1}","{2}","{3}"', '"{}" "{}" "{}" "{}"'),
+        *('"bead one",{1},{2},{3}', "bead one\t{1}\t{2}\t{3}", "C {1}, {2}, {3}", "bead one; {1}; {2}; {3}"),
     ],
 )
 def test_leading_columns(template: str, first: int) -> None:
@@ -55,6 +58,11 @@ def test_leading_columns(template: str, first: int) -> None:
         ("x y z", "{1} {2} {3}"),
         ("x,y,z,", "{1},{2},{3},"),
         ("x_nm,y_nm,z_nm", "{1},{2},{3}"),
+        ("residue name,x,y,z", "ALA 1,{1},{2},{3}"),
+        ("x,y,z,what it is", '{1},{2},{3},"a bead, blue"'),
+        ("bead name;x;y;z", "bead one;{1};{2};{3}"),
+        ("bead name\tx\ty\tz", "bead {0}\t{1}\t{2}\t{3}"),
+        ("pos x,pos y,pos z", "{1},{2},{3}"),
         ("x-coord y-coord z-coord", "{1} {2} {3}"),
     ],
 )
@@ -114,6 +122,18 @@ def test_a_comment_may_be_the_header_of_more_columns() -> None:
     assert parsed("# model of a knot\n" + rows("{} {} {} {}")) == [POINTS]
     assert parsed("# x, y, z, tension\n" + rows("{1}, {2}, {3}, 0.5")) == [POINTS]
     assert parsed("# z y x\n" + rows("{1} {2} {3}")) == [POINTS]  # three columns are x y z whatever is said
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_csv_is_written(tmp_path: Path, count: int) -> None:
+    parts = [np.array(POINTS) + 7 * k for k in range(count)]
+    formats.write(tmp_path / "k.csv", parts, ["a: knot", "x,y,z"])
+    header = "x,y,z" if count == 1 else "component,x,y,z"
+    first = "0.0,0.0,0.0" if count == 1 else "1,0.0,0.0,0.0"
+    assert (tmp_path / "k.csv").read_text().splitlines()[2:4] == [header, first]
+    curve = formats.read(tmp_path / "k.csv")
+    assert [part.tolist() for part in curve.components] == [part.tolist() for part in parts]
+    assert curve.comments == ["a: knot", "x,y,z"]
 
 
 def test_tables_may_be_joined() -> None:

@@ -365,8 +365,11 @@ MALFORMED_DATA = {
         DATA.replace("\n7 1 7 8\n", "\n7 1 7 99\n"),
         r":\d+: the bond is with an atom that is not",
     ),
-    "branches": (DATA.replace("\n7 1 7 8\n", "\n7 1 7 9\n"), r":\d+: atom 9 has 3 bonds, but curves do not"),
-    "a loop": (DATA.replace("\n7 1 7 8\n", "\n7 1 7 7\n"), r":\d+: atom 7 has \d bonds"),
+    "branches": (
+        DATA.replace("\n7 1 7 8\n", "\n7 1 7 9\n"),
+        r":\d+: this atom has 3 bonds, but curves do not",
+    ),
+    "a loop": (DATA.replace("\n7 1 7 8\n", "\n7 1 7 7\n"), r":\d+: this atom has \d bonds"),
 }
 
 

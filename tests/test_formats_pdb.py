@@ -9,6 +9,7 @@ from knots import Floats, damaged, hopf, trefoil
 
 from sono import formats
 from sono.formats import FormatError, VertexFile
+from sono.formats.boxes import Box
 from sono.formats.pdb import hybrid36
 from sono.formats.vertices import Raw
 from sono.invariants import fingerprint
@@ -81,6 +82,57 @@ def link(one: tuple[str, str, int], other: tuple[str, str, int]) -> str:
     return f"LINK         {ends[0]}                 {ends[1]}     1555   1555  1.33\n"
 
 
+def shuffled(name: str, components: Sequence[Floats], skip: Sequence[int] = ()) -> str:
+    """Atoms in any order, and bonds that tell their order; those after some atoms are left out."""
+    rows = np.vstack(components)
+    serials = np.random.default_rng(1).permutation(len(rows)) + 1
+    text = "".join(atom(k, rows[i].tolist(), name) for k, i in sorted(zip(serials, range(999), strict=False)))
+    for ring in np.split(serials, np.cumsum([len(part) for part in components])[:-1]):
+        bonds = enumerate(zip(ring, np.roll(ring, -1), strict=True))
+        text += "".join(f"CONECT{a:>5}{b:>5}\n" for i, (a, b) in bonds if i not in skip)
+    return text
+
+
+@pytest.mark.parametrize("name", ["B", "CA"])
+@pytest.mark.parametrize("components", [[KNOT], hopf()], ids=["a knot", "a link"])
+def test_beads_follow_their_bonds(name: str, components: Sequence[Floats]) -> None:
+    (curve,) = read(shuffled(name, components) + atom(200, [90.0, 0, 0], name))
+    assert fingerprint(curve.components) == fingerprint(components)
+    assert sorted(map(len, curve.components)) == sorted(map(len, components))
+    assert any("follows the bonds, which join its atoms in another order" in note for note in curve.doubts())
+
+
+def test_bonds_that_leave_a_chain_open_do_so_in_any_order() -> None:
+    with pytest.raises(FormatError, match=r"the chain is open"):
+        read(shuffled("B", [KNOT], skip=[7]))
+    assert formats.parse("k.pdb", shuffled("B", [KNOT], skip=[7]).encode(), "direct")
+
+
+def test_bonds_that_tell_no_chain() -> None:
+    cross = "CONECT    5   20\n"
+    with pytest.raises(
+        FormatError, match=r"^k\.pdb:5: a bond of this atom is not with a neighbour, and most"
+    ):
+        read(trace(KNOT, name="B") + cross)
+    bonds = "".join(f"CONECT{i:>5}{i + 1:>5}\n" for i in range(1, 60))
+    with pytest.raises(FormatError, match=r"^k\.pdb:5: this atom has 3 bonds, but curves do not branch"):
+        read(trace(KNOT, name="B") + bonds + cross)
+
+
+def test_links_across_residues_change_no_order() -> None:
+    cross = "CONECT    5   20\nCONECT    9   40\n"
+    bonds = "".join(f"CONECT{i:>5}{i % 60 + 1:>5}\n" for i in range(1, 61))
+    for more in ("", bonds):
+        (curve,) = read(trace(KNOT) + more + cross)
+        assert close(curve, [KNOT])
+
+
+def test_a_ring_of_two_chains_is_one() -> None:
+    halves = trace(KNOT[:30], name="B") + "TER\n" + trace(KNOT[30:], 31, name="B", chain="B")
+    (curve,) = read(halves + "".join(f"CONECT{i:>5}{i % 60 + 1:>5}\n" for i in range(1, 61)))
+    assert close(curve, [KNOT])
+
+
 def test_link_closes_a_backbone_but_no_side_chain() -> None:
     ring = full(OPEN)
     (raw,) = raws(link(("N", "A", 1), ("C", "A", 45)) + ring)
@@ -125,6 +177,19 @@ def test_models_are_curves() -> None:
     assert close(found[1], [2 * KNOT])
     two = trace(OPEN) + "TER\n" + trace(OPEN + 50, 100, chain="B")
     assert [raw.key for raw in raws(models(two, two))] == ["1:A", "1:B", "2:A", "2:B"]
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+@pytest.mark.parametrize("rows", [KNOT, OPEN], ids=["closed", "open"])
+def test_a_model_that_is_wrong_spoils_no_other(place: int, rows: Floats) -> None:
+    contents = [trace(rows)] * 3
+    contents[place] = contents[place].replace("ALA A   7 ", "ALA A  left", 1).replace(".", "", 1)
+    found = raws(models(*contents))
+    for number, raw in enumerate(found):
+        if number != place:
+            assert close(VertexFile.checked("k.pdb", raw, "direct"), [rows]) or rows is OPEN
+    with pytest.raises(FormatError, match=r"^k\.pdb:\d+: there are no x y z with decimals"):
+        VertexFile.checked("k.pdb", found[place], "direct")
 
 
 def test_segments_are_chains_where_these_have_no_ids() -> None:
@@ -178,8 +243,11 @@ def test_a_second_chain_in_disguise_is_refused() -> None:
         read(trace(KNOT) + trace(KNOT + 90))
     beads = trace(KNOT, name="C") + trace(KNOT + 5, 61, name="C")
     bonds = "".join(f"CONECT{i:>5}{i + 1 if i % 60 else i - 59:>5}\n" for i in range(1, 121))
+    assert len(read(beads + bonds)[0].components) == 2
+    bonds = "".join(f"CONECT{i:>5}{i + 1:>5}\n" for i in range(1, 120) if i != 60)
     with pytest.raises(FormatError, match=r"^k\.pdb:61: no CONECT joins this atom, from line 60; put TER"):
         read(beads + bonds)
+    bonds += "".join(f"CONECT{i:>5}{i - 59:>5}\n" for i in (60, 120))
     assert (
         len(read(trace(KNOT, name="C") + "TER\n" + trace(KNOT + 5, 61, name="C") + bonds)[0].components) == 2
     )
@@ -280,6 +348,35 @@ def test_hybrid_36_counts_up_without_a_gap() -> None:
 def test_what_does_not_fit_is_not_written(components: Sequence[Floats], message: str) -> None:
     with pytest.raises(FormatError, match=message):
         written(components)
+
+
+@pytest.mark.parametrize("name", ["B", "CA"])
+@pytest.mark.parametrize("angles", [(90.0, 90.0, 90.0), (80.0, 95.0, 100.0)])
+def test_a_unit_cell_unwraps_what_it_has_wrapped(name: str, angles: tuple[float, ...]) -> None:
+    side = 1.5 * float(np.ptp(KNOT, axis=0).max())
+    box = Box.of_angles(np.full(3, side), np.array(angles))
+    cell = "CRYST1" + f"{side:9.3f}" * 3 + "".join(f"{angle:7.2f}" for angle in angles) + " P 1           1\n"
+    scaled = KNOT @ np.linalg.inv(box.edges)
+    (curve,) = read(cell + trace(box.at(scaled - np.floor(scaled)), name=name))
+    (part,) = curve.components
+    assert np.allclose(part - part[0], KNOT - KNOT[0], atol=0.02)
+    assert any("the chains were unwrapped" in note for note in curve.doubts())
+    (curve,) = read(cell + trace(KNOT, name=name))
+    assert close(curve, [KNOT])
+
+
+def test_a_ring_round_the_cell_is_refused_but_no_chain_that_touches_its_image() -> None:
+    rows = np.column_stack([np.arange(20) * 3.8, 3 * np.sin(np.arange(20) * np.pi / 10), np.zeros(20)])
+    text = "CRYST1   76.000   76.000   76.000  90.00  90.00  90.00 P 1\n" + trace(rows)
+    assert [chain.closed for chain in raws(text)[0].chains] == [False]
+    with pytest.raises(FormatError, match=r"^k\.pdb:21: the chain winds round the periodic box"):
+        read(text + "CONECT    1   20\n")
+
+
+@pytest.mark.parametrize("sides", ["    1.000" * 3, "    0.000" * 3, "    8.000" * 3, "", "     left" * 3])
+def test_a_cell_that_is_none_changes_nothing(sides: str) -> None:
+    (curve,) = read(f"CRYST1{sides}  90.00  90.00  90.00 P 1\n" + trace(KNOT))
+    assert close(curve, [KNOT])
 
 
 TRACE = trace(KNOT) + "END\n"

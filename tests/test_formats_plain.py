@@ -96,6 +96,62 @@ def test_json(content: Any, indent: int | None) -> None:
     assert lists("k.json", json.dumps([POINTS, OTHER])) == [POINTS, OTHER]
 
 
+ROWS = [", ".join(map(str, row)) for row in POINTS]
+MORE = [", ".join(map(str, row)) for row in OTHER]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "\n".join(f"[{row}]" for row in ROWS),
+        "# a knot\n" + "\n".join(f"[{row}],  # a vertex\n # more" for row in ROWS),
+        "\n".join(f"({row})" for row in ROWS),
+        "\n".join("{" + row + "}" for row in ROWS) + "\n",
+        "{" + ",\n".join("{" + row + "}" for row in ROWS) + "}",
+        "{{" + "}, {".join(ROWS).replace("0.25", "2.5`17.*^-1") + "}}",
+        "[[" + "]\n [".join(ROWS).replace(",", " ") + "]]\n",
+        str([tuple(row) for row in POINTS]).strip("[]"),
+    ],
+)
+@pytest.mark.parametrize("suffix", ["txt", "json", "dat"])
+def test_vertices_in_brackets(content: str, suffix: str) -> None:
+    assert lists(f"k.{suffix}", content) == [POINTS]
+
+
+def test_components_in_brackets() -> None:
+    assert lists("k.txt", "{{{" + "}, {".join(ROWS) + "}},\n{{" + "},\n {".join(MORE) + "}}}") == [
+        POINTS,
+        OTHER,
+    ]
+    assert lists("k.txt", "\n".join(f"[{row}]" for row in [*ROWS, *MORE]).replace("2.0]", "2.0]\n")) == [
+        POINTS,
+        OTHER,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("[0, 0, 0]\n[1, 0, x]\n", "2: '1, 0, x' is no vertex; give three numbers"),
+        ("[0, 0, 0]\n[1, 0]\n", "2: '1, 0' is no vertex"),
+        ("{{0, 0, 0},\n{1, 0, 0},\n{0, 1, 0}", "3: brackets are opened that are not closed"),
+        ("{{0, 0, 0},\n{1, 0, 0},\n{0, 1", "3: '0, 1' is in no brackets"),
+        ("[0, 0, 0]\n[1, 0, 0]\n0, 1, 0\n", "3: '0, 1, 0' is in no brackets"),
+        ("<svg>\n<path/>\n</svg>\n", "1: of XML only ideal knots, with Coeff in them, are read"),
+        ('<?xml version="1.0"?>\n<a><b></a>\n', "1: of XML only ideal knots"),
+    ],
+)
+def test_what_is_wrong_in_brackets_and_tags(content: str, message: str) -> None:
+    with pytest.raises(FormatError, match=rf"^k\.txt:{message}"):
+        parsed("k.txt", content)
+
+
+@pytest.mark.parametrize("kind", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_utf_16_is_to_be_saved_otherwise(kind: str) -> None:
+    with pytest.raises(FormatError, match=r"^k\.txt:1: this is UTF-16 text, or none; save it as UTF-8"):
+        parsed("k.txt", "0 0 0\n1 0 0\n0 1 0\n".encode(kind))
+
+
 def test_json_keeps_what_is_known_of_a_rope(sono: Sono) -> None:
     sono("tighten", "3_1.txt", "-n", "60", "-o", "rope.json", *QUICK)
     document = json.loads(Path("rope.json").read_text())
@@ -140,6 +196,40 @@ def test_npy_has_components_of_one_size(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match=r"k.npy: NPY holds components of one size.* 3 to 4; write .npz"):
         formats.write(tmp_path / "k.npy", [np.array(POINTS), np.array(OTHER)])
     assert list(tmp_path.iterdir()) == []
+
+
+def saved(**arrays: object) -> bytes:
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)  # type: ignore[arg-type]
+    return stream.getvalue()
+
+
+BESIDE = [
+    {"box": np.ones(3)},
+    {"box": np.eye(3), "n": 4},
+    {"names": np.array(["a", "b"]), "bounds": np.zeros((2, 3)), "distances": np.zeros((4, 4))},
+    {"empty": np.zeros((0, 3)), "flags": np.zeros((4, 3), bool)},
+]
+
+
+@pytest.mark.parametrize("beside", BESIDE)
+@pytest.mark.parametrize("coords", [POINTS, [POINTS, POINTS]])
+def test_arrays_beside_the_curve_are_left_out(beside: dict[str, object], coords: list[Any]) -> None:
+    content = saved(**beside, coords=coords)
+    assert np.array_equal(lists("k.npz", content), np.reshape(coords, (-1, 4, 3)))
+    left = f"k.npz: left out the arrays {', '.join(beside)}, which are no curves"
+    assert parsed("k.npz", content).notes[-1] == left
+
+
+def test_arrays_of_an_npz_are_a_link_or_one_is_chosen(tmp_path: Path) -> None:
+    (tmp_path / "k.npz").write_bytes(saved(one=POINTS, two=OTHER, box=np.ones(3)))
+    curve = formats.read(tmp_path / "k.npz")
+    assert len(curve.components) == 2
+    assert "was read as a link of 2 components, the arrays one, two; " in curve.notes[0]
+    assert [part.tolist() for part in formats.read(f"{tmp_path}/k.npz:two").components] == [OTHER]
+    with pytest.raises(FormatError, match="holds no curve 'box'; there are: one, two"):
+        formats.read(f"{tmp_path}/k.npz:box")
+    assert parsed("k.npz", npz.write([np.array(POINTS), np.array(OTHER)], [])).notes == []
 
 
 def test_npz() -> None:

@@ -171,3 +171,82 @@ def test_large_files_are_quick() -> None:
     start = time.process_time()
     assert len(parsed(content)[0].components[0]) == 100_000
     assert time.process_time() - start < 3  # 0.5 s as a rule
+
+
+KNOT = starts.start("3_1")[0] * 3
+TILTED = np.array([[40.0, 0, 0], [9, 40, 0], [5, -8, 40]])
+
+
+def boxed(rows: np.ndarray, edges: np.ndarray, wrap: bool = True, marks: str = ' pbc="T T T"') -> str:
+    """A frame in a periodic box, the rows wrapped into it."""
+    scaled = rows @ np.linalg.inv(edges)
+    inside = (scaled - np.floor(scaled)) @ edges if wrap else rows
+    lattice = " ".join(map(str, edges.ravel().tolist()))
+    content = "".join(f"C {x} {y} {z}\n" for x, y, z in inside.tolist())
+    return f'{len(rows)}\nLattice="{lattice}" Properties=species:S:1:pos:R:3{marks}\n{content}'
+
+
+@pytest.mark.parametrize("marks", [' pbc="T T T"', ""])
+@pytest.mark.parametrize("edges", [np.eye(3) * 1.3, TILTED / 26], ids=["right", "tilted"])
+@pytest.mark.parametrize("shift", [0.0, 0.3, 0.9])
+def test_a_box_unwraps_what_it_has_wrapped(edges: np.ndarray, marks: str, shift: float) -> None:
+    edges = edges * np.ptp(KNOT, axis=0).max()
+    rows = KNOT + shift * edges.sum(axis=0)
+    (curve,) = parsed(boxed(rows, edges, marks=marks))
+    (part,) = curve.components
+    assert np.allclose(part - part[0], rows - rows[0])
+    assert not shift or any("the chains were unwrapped" in note for note in curve.doubts())
+
+
+@pytest.mark.parametrize("size", [1.01, 1.3, 9.0, 0.3])
+def test_a_chain_that_is_not_wrapped_stays(size: float) -> None:
+    edges = np.eye(3) * np.ptp(KNOT, axis=0).max() * size
+    (curve,) = parsed(boxed(KNOT, edges, wrap=False))
+    assert curve.components[0].tobytes() == KNOT.tobytes()
+    assert curve.doubts() == []
+
+
+def test_components_are_unwrapped_each_on_its_own() -> None:
+    content = boxed(np.vstack([KNOT, KNOT + 5]), np.eye(3) * 1.5 * np.ptp(KNOT, axis=0).max())
+    head, comment, *rows = content.splitlines()
+    rows = [f"{row} {1 + i // len(KNOT)}" for i, row in enumerate(rows)]
+    (curve,) = parsed("\n".join([head, comment.replace("pos:R:3", "pos:R:3:molecule:I:1"), *rows]))
+    assert all(np.allclose(part - part[0], KNOT - KNOT[0]) for part in curve.components)
+    assert any("check how these are linked" in note for note in curve.doubts())
+
+
+def test_what_a_box_cannot_tell_is_refused() -> None:
+    line = np.column_stack([np.arange(40) * 0.25 + 5, np.sin(np.arange(40) / 6.4), np.zeros(40)])
+    with pytest.raises(FormatError, match="winds round the periodic box"):
+        parsed(boxed(line, np.eye(3) * 10))
+    sticks = np.array([[0.1, 0, 0], [9, 0.1, 0], [9, 9, 1], [0, 9, 2], [1, 1, 9]])
+    with pytest.raises(
+        FormatError, match=r"^k.xyz:4: the step to this atom is longer than half the periodic"
+    ):
+        parsed(boxed(sticks, np.eye(3) * 10))
+    with pytest.raises(FormatError, match=r"^k.xyz:2: '1 2' is no periodic box; give nine numbers"):
+        parsed(frame('Lattice="1 2" Properties=species:S:1:pos:R:3'))
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (frame().replace("C -1.0 0.0 2.0", "C -1.0 0.0"), "12: 3 columns, where the first row has 4"),
+        (frame().replace("C -1.0 0.0 2.0", "C -1.0 nought 2.0"), "12: 'nought' is not a number"),
+        (frame().replace("C -1.0 0.0 2.0\n", ""), "7: 4 rows should follow, there are 3; correct the count"),
+        (frame().replace("4", "3", 1), "12: 'C -1.0 0.0 2.0' is no count of rows"),
+        (frame().replace("4", "9", 1), "7: 9 rows should follow, there are 4"),
+        (frame().replace("4", "0", 1), "7: '0' is no count of rows"),
+        (frame("Properties=pos:R:2"), "9: the comment's Properties are not"),
+    ],
+)
+@pytest.mark.parametrize("last", [False, True])
+def test_a_frame_that_is_wrong_spoils_no_other(bad: str, message: str, last: bool) -> None:
+    found = xyz.read(frame() + bad + ("" if last else frame("3") + frame()), "k.xyz")
+    assert [raw.key for raw in found] == ["1", "2", "3", "4"][: len(found)]
+    assert len(found) == (2 if last else 4)
+    for place, raw in enumerate(found):
+        if place != 1:
+            assert VertexFile.checked("k.xyz", raw).components[0].tolist() == POINTS
+    with pytest.raises(FormatError, match=rf"^k\.xyz:{re.escape(message)}"):
+        VertexFile.checked("k.xyz", found[1])

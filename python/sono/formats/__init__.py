@@ -19,9 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats import (
+    brackets,
     codes,
+    commas,
     coords,
     fseries,
+    gro,
     ideal,
     jsons,
     knotplot,
@@ -101,10 +104,12 @@ READERS: dict[str, Reader] = {
     "xyz": xyz,
     "obj": obj,
     "codes": codes,  # ahead of JSON, whose brackets they may have
+    "brackets": brackets,
     "json": jsons,
     "lammpstrj": lammpstrj,
     "lammps": lammps,
     "pdb": pdb,
+    "gro": gro,
     "mmcif": mmcif,
     "ideal": ideal,
     "fseries": fseries,
@@ -115,7 +120,7 @@ READERS: dict[str, Reader] = {
 
 BINARY: dict[str, BinaryReader] = {"npy": npy, "npz": npz, "knotplot": knotplot}
 
-SINGLE = {"text", "vect", "obj", "json", "npy", "npz", "lammps", "fseries", "pkf", "coords", "knotplot"}
+SINGLE = {*BINARY, "text", "brackets", "vect", "obj", "json", "lammps", "fseries", "pkf", "coords"}
 """The formats whose files hold one curve; into others a batch looks before it begins."""
 
 WRITERS: dict[str, Writer] = {
@@ -127,6 +132,7 @@ WRITERS: dict[str, Writer] = {
     "npz": npz,
     "lammps": lammps,
     "pdb": pdb,
+    "csv": commas,
     "text": text,
 }
 
@@ -140,6 +146,7 @@ SUFFIXES = {
     "": "text",
     ".txt": "text",
     ".dat": "text",
+    ".csv": "csv",
     ".xyz": "xyz",
     ".vect": "vect",
     ".obj": "obj",
@@ -151,18 +158,16 @@ SUFFIXES = {
     ".data": "lammps",
     ".pdb": "pdb",
     ".ent": "pdb",
-    ".cif": "mmcif",
-    ".mmcif": "mmcif",
+    ".gro": "gro",
+    **dict.fromkeys((".cif", ".mmcif"), "mmcif"),
     ".fseries": "fseries",
     ".pkf": "pkf",
-    ".pd": "codes",
-    ".dt": "codes",
-    ".gauss": "codes",
+    **dict.fromkeys((".pd", ".dt", ".gauss"), "codes"),
 }
 """The format of a file by its suffix."""
 
-LOOSE = {PLAIN, "xyz"}
-"""The formats whose suffixes say little of what is in a file: plain rows are called .xyz as well."""
+LOOSE = {PLAIN, "xyz", "csv"}
+"""The formats whose suffixes say little of what is in a file: plain rows are called .xyz and .csv as well."""
 
 
 def read(source: str | os.PathLike[str], close: Close | None = None) -> VertexFile:
@@ -196,6 +201,7 @@ def raws(source: str | os.PathLike[str]) -> tuple[str, Sequence[Raw]]:
     found = _unchecked(name, data)
     if key is None:
         return name, found
+    found = found[0].parts or found
     if chosen := [raw for raw in found if raw.key == key]:
         return name, chosen
     keys = _listed(found) or "no others"

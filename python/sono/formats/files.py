@@ -16,6 +16,9 @@ from sono.formats.vertices import FormatError
 GZIP = b"\x1f\x8b"
 """What a gzip file begins with."""
 
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+"""What a file of UTF-16 begins with."""
+
 HEAD = 1 << 14
 """Bytes that are looked at to tell what a file is."""
 
@@ -52,6 +55,8 @@ def head(path: str) -> bytes:
 
 def decoded(name: str, data: bytes) -> str:
     r"""Give the text in a file's bytes; its lines end in \n. Raises `FormatError` when it is not UTF-8."""
+    if data.startswith(UTF_16) or b"\0" in data[:2]:
+        raise FormatError.at(name, 1, "this is UTF-16 text, or none; save it as UTF-8")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

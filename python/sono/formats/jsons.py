@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sono._core import CurveError
 from sono.curve import measure
-from sono.formats import ropefile
+from sono.formats import brackets, ropefile
 from sono.formats.vertices import Chain, FormatError, Raw
 
 FORMAT, VERSION = "sono curve", 1
@@ -37,6 +37,8 @@ def read(text: str, name: str) -> list[Raw]:
     try:
         document = json.loads(text)
     except json.JSONDecodeError as error:
+        if brackets.recognises(text):
+            return brackets.read(text, name)
         raise FormatError.at(name, error.lineno, f"is no JSON: {error.msg}; complete or correct it") from None
     except (ValueError, RecursionError):
         raise FormatError.at(

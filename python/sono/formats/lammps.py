@@ -92,7 +92,7 @@ def _by_order(atoms: Atoms) -> tuple[list[Ints], Sequence[bool | None], list[str
 
 def _by_bonds(bonds: Ints, atoms: Atoms) -> tuple[list[Ints], Sequence[bool | None], list[str]]:
     """Give the chains along the bonds, likewise."""
-    chains = list(along(bonds, atoms))
+    chains = list(along(bonds, atoms.name, atoms.lines))
     groups, notes = kept([chain for chain, _ in chains], len(atoms.ids))
     rings = {chain[0] for chain, ring in chains if ring}
     return groups, [group[0] in rings for group in groups], notes

@@ -1,5 +1,6 @@
 """Which columns of a row are the coordinates: told by a header, or by what the first row holds."""
 
+import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,20 +27,40 @@ _AXIS = re.compile(
 )
 _AXIS_NUMBER = re.compile(r"(?:points|position|pos|coords?)[:_ .]([012])")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
-_WORD = re.compile(r"[A-Za-z_][\w'*+-]*")
+_WORD = re.compile(r"[A-Za-z_][\w'*+ -]*")
 
 
 def cells_of(data: str) -> list[str]:
-    """Split a row; a comma beside another one leaves an empty cell, so that a missing number is noticed."""
-    if ";" in data:
-        cells = data.split(";")
-    elif "," in data:
-        cells = re.split(r"\s*,\s*|\s+", data)
-    else:
-        cells = [cell.strip() for cell in data.split("\t")]
-        cells = data.split() if any(" " in cell for cell in cells) else cells
-    cells = [cell.strip().strip("\"'") for cell in cells]
+    """Split a row at its marks, or else at spaces, which fields may have that stand between marks.
+
+    A comma beside another one leaves an empty cell, so that a missing number is noticed.
+    """
+    mark = next((mark for mark in ";,\t" if mark in data), "")
+    cells = [cell.strip() for cell in _quoted(data, mark)] if mark else data.split()
+    if (
+        mark != ";"
+        and len(cells) < 4
+        and any(not_a_number(cell.split()[1:]) is None for cell in _spaced(cells))
+    ):
+        cells = re.split(r"\s*,\s*|\s+", data)  # C 1.0, 2.0, 3.0 has marks of both kinds
+    cells = [cell.strip("\"'") for cell in cells]
     return cells[:-1] if len(cells) > 3 and not cells[-1] else cells  # a mark ends the row, too
+
+
+def _spaced(cells: Sequence[str]) -> list[str]:
+    return [cell for cell in cells if len(cell.split()) > 1]
+
+
+def _quoted(data: str, mark: str) -> list[str]:
+    """Split at a mark, but not within quotes."""
+    try:
+        return (
+            next(csv.reader([data], delimiter=mark, skipinitialspace=True))
+            if '"' in data
+            else data.split(mark)
+        )
+    except csv.Error:  # a cell too long for the module
+        return data.split(mark)
 
 
 @dataclass(frozen=True)
@@ -123,6 +144,8 @@ def comma(cell: str) -> str:
 
 def wrong(data: str) -> str:
     """Say what is wrong with a row of a file without a header."""
+    if data.startswith("<"):
+        return "of XML only ideal knots, with Coeff in them, are read; give rows of three numbers x y z"
     words = data.split(";") if ";" in data else data.split()
     if len(words) > 2 and (cell := next(filter(_DECIMAL_COMMA.fullmatch, map(str.strip, words)), None)):
         return comma(cell)

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from sono._core import CurveError
 from sono.curve import measure
+from sono.formats.boxes import Box
 from sono.formats.molecules import Atom, Bonds, Model, curves
 from sono.formats.vertices import FormatError, Raw, shown
 
@@ -37,7 +38,7 @@ REMARK = "REMARK 999"
 THIN = 0.005
 """A curve whose rope has a smaller radius might change its type when its coordinates are rounded."""
 
-_RECORD = re.compile(r"HETATM|CONECT|(ATOM|MODEL|ENDMDL|END|TER|LINK)(?![A-Z])")
+_RECORD = re.compile(r"HETATM|CONECT|(ATOM|MODEL|ENDMDL|END|TER|LINK|CRYST1)(?![A-Z])")
 _FIRST = re.compile(r"(ATOM|HEADER|MODEL|REMARK) |HETATM|CRYST1")
 _NUMBER = re.compile(r"-?\w+")
 _DECIMAL = re.compile(r"[+-]?\d*\.\d*(e[+-]?\d+)?|[+-]?(nan|inf)", re.IGNORECASE)
@@ -57,7 +58,9 @@ def read(text: str, name: str) -> list[Raw]:
         raise FormatError.at(
             name, 1, "the file holds no ATOM or HETATM; a PDB file begins each atom's line so"
         )
-    models = [Model(model.key, model.atoms, file.bonds(model)) for model in file.models]
+    models = [
+        Model(found.key, found.atoms, file.bonds(found), file.box, found.wrong) for found in file.models
+    ]
     return [replace(raw, comments=file.comments) for raw in curves(models, name)]
 
 
@@ -69,6 +72,13 @@ class _Found:
     atoms: list[Atom] = field(default_factory=list)
     serials: dict[str, int] = field(default_factory=dict)
     sites: dict[tuple[str, str, str], int] = field(default_factory=dict)
+    wrong: FormatError | None = None
+
+    def add(self, serial: str, atom: Atom) -> None:
+        """Take an atom."""
+        self.serials.setdefault(serial, len(self.atoms))
+        self.sites.setdefault((atom.chain, atom.number, atom.name), len(self.atoms))
+        self.atoms.append(atom)
 
 
 class _File:
@@ -79,6 +89,7 @@ class _File:
         self._part = 0
         self._ended = True
         self._key = ""
+        self.box: Box | None = None
         self.comments: list[str] = []
         self._links: list[tuple[tuple[str, str, str], tuple[str, str, str]]] = []
         self._connected: list[str] = []
@@ -88,14 +99,13 @@ class _File:
         found = _RECORD.match(line)
         record = found[0] if found else ""
         if record in ("ATOM", "HETATM"):
-            serial, atom = self._atom(line, number)
             if self._ended:
                 self.models.append(_Found(self._key or str(len(self.models) + 1)))
             self._ended = False
-            model = self.models[-1]
-            model.serials.setdefault(serial, len(model.atoms))
-            model.sites.setdefault((atom.chain, atom.number, atom.name), len(model.atoms))
-            model.atoms.append(atom)
+            try:
+                self.models[-1].add(*self._atom(line, number))
+            except FormatError as error:  # which spoils no other model
+                self.models[-1].wrong = self.models[-1].wrong or error
         elif record == "MODEL":
             self._ended, self._key = True, line[5:].strip()
         elif record in ("ENDMDL", "END"):  # some programs end frames, but begin none
@@ -106,11 +116,13 @@ class _File:
             self.comments.append(line.removeprefix(REMARK).strip())
         elif record == "CONECT":
             self._connected.append(line)
+        elif record == "CRYST1":
+            self.box = _box(line)
         elif record == "LINK":
             self._links.append((_site(line, 12), _site(line, 42)))
 
     def _atom(self, line: str, number: int) -> tuple[str, Atom]:
-        """Read a row by its columns, or else by its words."""
+        """Read a row by its columns, or else by its words. Raises `FormatError`."""
         cells = [line[column : column + 8].strip() for column in (30, 38, 46)]
         if line[27:30].strip() or not all(_DECIMAL.fullmatch(cell) for cell in cells):
             return self._free(line, number)
@@ -164,6 +176,15 @@ class _File:
             if one in model.sites and other in model.sites:
                 found.add(frozenset((model.sites[one], model.sites[other])))
         return found
+
+
+def _box(line: str) -> Box | None:
+    """Read the unit cell, or nothing where there is none, as for structures that are no crystals."""
+    try:
+        sides, angles = np.array(line[6:54].split(), float).reshape(2, 3)
+        return Box.of_angles(sides, angles)
+    except ValueError:
+        return None
 
 
 def _site(line: str, at: int) -> tuple[str, str, str]:

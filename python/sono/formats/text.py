@@ -55,10 +55,14 @@ def read(text: str, name: str) -> list[Raw]:
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> str:
     """Give the whole file; every coordinate reads back to the same bits."""
-    head = "".join(f"# {line}".rstrip() + "\n" for comment in comments for line in comment.splitlines())
-    return head + "\n".join(
+    return head(comments) + "\n".join(
         "".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in vertices.tolist()) for vertices in components
     )
+
+
+def head(comments: Sequence[str]) -> str:
+    """Give the lines of comments ahead of the rows."""
+    return "".join(f"# {line}".rstrip() + "\n" for comment in comments for line in comment.splitlines())
 
 
 def _cells(data: str) -> list[str]:

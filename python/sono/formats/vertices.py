@@ -50,13 +50,14 @@ class Raw:
     """A curve as a format has read it, not yet checked.
 
     The `key` tells it from the others in its file, if there may be any. The `notes` tell the user what was
-    made of the file. The `comments` are what the file says of it.
+    made of the file. The `comments` are what the file says of it. It may be made of `parts` that have keys.
     """
 
     chains: Sequence[Chain]
     key: str = ""
     notes: Sequence[str] = ()
     comments: Sequence[str] = ()
+    parts: Sequence["Raw"] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,26 +8,34 @@
 
 Each frame is a curve, with the number of the frame as its key. Columns beyond x y z are read over, unless the
 comment is that of extended XYZ: `Properties=id:I:1:species:S:1:pos:R:3` says where the coordinates are, and
-where an index or a component. Without that one the ends of a chain decide whether it is closed. What is
+where an index or a component. A periodic box, `Lattice="9 0 0 0 9 0 0 0 9" pbc="T T T"`, unwraps the chains
+that it has wrapped. Without components the ends of a chain decide whether it is closed. What is
 written here says how many vertices each component has. Source of the extension: the ASE and OVITO manuals.
 """
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import partial
 from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sono.formats.boxes import APART, Box, rejoined
 from sono.formats.columns import Parts
 from sono.formats.doubts import gaps
 from sono.formats.layouts import Layout
-from sono.formats.vertices import Chain, FormatError, Raw, shown
+from sono.formats.refused import attempted
+from sono.formats.simulated import BY_NEAREST
+from sono.formats.vertices import Chain, FormatError, Raw, numbers, shown
 
 _COUNT = re.compile(r"\s*\d+\s*(\n|$)")
 _SIZES = re.compile(r'(?:^|\s)components="([\d ]*)"')
 _COMMENT = re.compile(r'(?:^|\s)comment="((?:[^"\\]|\\.)*)"')
 _PROPERTIES = re.compile(r'(?:^|\s)Properties="?([^\s"]+)', re.IGNORECASE)
+_LATTICE = re.compile(r'(?:^|\s)Lattice="([^"]*)"', re.IGNORECASE)
+_PERIODIC = re.compile(r'(?:^|\s)pbc="([^"]*)"', re.IGNORECASE)
 
 BETWEEN = " | "
 """Stands between the comments, which share a line."""
@@ -39,26 +47,39 @@ def recognises(text: str) -> bool:
 
 
 def read(text: str, name: str) -> list[Raw]:
-    """Parse all frames; lengths keep the file's unit. Raises `FormatError`."""
+    """Parse all frames; lengths keep the file's unit. Raises `FormatError`.
+
+    A frame that is wrong spoils no other: its error is raised by its chains.
+    """
     lines = text.rstrip().split("\n")
-    frames = []
-    first = 0
-    while first < len(lines):
-        if not lines[first].strip():
-            first += 1
-            continue
-        count = _count(lines[first], name, first + 1)
-        frames.append((first, count))
-        first += 2 + count
-    if first > len(lines):
-        message = (
-            f"{count} rows should follow, there are {max(0, count + len(lines) - first)}; correct the count"
-        )
-        raise FormatError.at(name, frames[-1][0] + 1, f"{message}, or complete the file")
+    starts = _starts(lines)
+    keys = [str(number) if len(starts) > 1 else "" for number in range(1, len(starts) + 1)]
     return [
-        _frame(lines[first : first + 2 + count], name, first + 1, str(number) if len(frames) > 1 else "")
-        for number, (first, count) in enumerate(frames, 1)
+        attempted(partial(_frame, lines[first:after], name, first + 1, key), key)
+        for key, first, after in zip(keys, starts, [*starts[1:], len(lines)], strict=True)
     ]
+
+
+def _starts(lines: Sequence[str]) -> list[int]:
+    """Find where frames begin: at a number alone, since no row is one, or at the first line with anything."""
+    starts = [next(place for place, line in enumerate(lines) if line.strip() or place == len(lines) - 1)]
+    for place, line in enumerate(lines):
+        if place > starts[-1] + 1 and line.strip().isdecimal():  # a comment may be a number, too
+            starts.append(place)
+    return starts
+
+
+def _rows(lines: Sequence[str], name: str, first: int) -> Sequence[str]:
+    """Give the rows of a frame, as many as it says. Raises `FormatError`."""
+    count = _count(lines[0], name, first)
+    there = len("\n".join(lines).rstrip().split("\n")) - 2
+    if there < count:
+        message = f"{count} rows should follow, there are {max(0, there)}; correct the count"
+        raise FormatError.at(name, first, f"{message}, or complete the file")
+    if there > count:
+        number = next(number for number in range(2 + count, len(lines)) if lines[number].strip())
+        _count(lines[number], name, first + number)
+    return lines[2 : 2 + count]
 
 
 def _count(line: str, name: str, number: int) -> int:
@@ -71,23 +92,54 @@ def _count(line: str, name: str, number: int) -> int:
 
 def _frame(lines: Sequence[str], name: str, first: int, key: str) -> Raw:
     """Read a frame whose count stands on the line `first`."""
+    rows = _rows(lines, name, first)
     ours = _COMMENT.search(lines[1])
     comment = _COMMENT.sub("", lines[1])
     parts = Parts()
     layout: Layout | None = None
-    for number, line in enumerate(lines[2:], first + 2):
+    for number, line in enumerate(rows, first + 2):
         try:
             layout = layout or _layout(comment, line.split())
             parts.add(layout, line.split(), number)
         except ValueError as error:
             raise FormatError.at(name, number, str(error)) from None
     chains, notes = parts.chains(None), list[str]()
+    if box := _box(comment, name, first + 1):
+        chains, notes = _whole(chains, box, name)
     if len(chains) == 1 and (sizes := _SIZES.search(comment)):
         chains = _apart(chains, [int(size[:18]) for size in sizes[1].split()], name, first + 1)
     else:
-        notes = [_doubt(chain, place, name) for chain in chains for place in gaps(np.array(chain.rows))]
+        notes += [_doubt(chain, place, name) for chain in chains for place in gaps(np.array(chain.rows))]
     said = re.sub(r"\\(.)", r"\1", ours[1]).split(BETWEEN) if ours else [comment.strip()]
     return Raw(chains, key, notes, [line for line in said if line])
+
+
+def _box(comment: str, name: str, line: int) -> Box | None:
+    """Give the periodic box, if the comment tells one."""
+    lattice, marks = _LATTICE.search(comment), _PERIODIC.search(comment)
+    periodic = np.array([mark[0] in "Tt1" for mark in marks[1].split()] if marks else [True] * 3)
+    if not lattice or not periodic.any():
+        return None
+    try:
+        edges = np.array(numbers(lattice[1].split())).reshape(3, 3)
+        if not edges.any():  # as it is written where there is no box
+            return None
+        if not np.isfinite(edges).all() or np.linalg.det(edges) == 0 or len(periodic) != 3:
+            raise ValueError
+    except ValueError:
+        cure = 'give nine numbers, and pbc="T T T" or which of the three are not periodic'
+        raise FormatError.at(name, line, f"{shown(lattice[1])} is no periodic box; {cure}") from None
+    return Box(np.zeros(3), edges, periodic)
+
+
+def _whole(chains: Sequence[Chain], box: Box, name: str) -> tuple[list[Chain], list[str]]:
+    """Put together the chains that the box has wrapped, and tell of it."""
+    rows = [np.array(chain.rows) for chain in chains]
+    moved = [rejoined(box, part, name, chain.lines) for part, chain in zip(rows, chains, strict=True)]
+    told = any(a is not b for a, b in zip(rows, moved, strict=True))
+    whole = [replace(chain, rows=part) for chain, part in zip(chains, moved, strict=True)]
+    notes = [BY_NEAREST, APART] if len(chains) > 1 else [BY_NEAREST]
+    return whole, [f"{name}: {note}" for note in notes] if told else []
 
 
 def _doubt(chain: Chain, place: int, name: str) -> str:

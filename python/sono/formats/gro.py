@@ -1,0 +1,76 @@
+"""GRO files of GROMACS: a title, a count, atoms in columns, and the periodic box; then the next frame.
+
+    a ring
+        3
+        1BEA      B    1   1.000   0.700   1.000
+        ...
+       3.00000   3.00000   3.00000
+
+What of them becomes a curve is said in `molecules`. Lengths are in nanometres. Source: GROMACS,
+reference manual, "gro file format".
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sono.formats.boxes import Box
+from sono.formats.molecules import Atom, Model, curves
+from sono.formats.vertices import FormatError, Raw, numbers, shown
+
+_ROW = r"[ \d]{5}.{10}[ \d]{5}(?: *-?\d+\.\d+){3}"
+_HEAD = re.compile(rf".*\n[ \t]*\d+[ \t]*\n{_ROW}")
+
+
+def recognises(text: str) -> bool:
+    """Tell whether a count and a row of an atom follow the first line."""
+    return _HEAD.match(text) is not None
+
+
+def read(text: str, name: str) -> list[Raw]:
+    """Parse a whole file; lengths keep its unit. Raises `FormatError`."""
+    lines = text.rstrip().split("\n")
+    models, titles, first = list[Model](), list[str](), 0
+    while first < len(lines):
+        count = lines[first + 1].strip() if first + 1 < len(lines) else ""
+        after = first + 2 + (int(count[:9]) if count.isdecimal() else 0)
+        if not 2 < after - first <= len(lines) - first - 1:
+            message = f"a count of atoms, so many rows, and the box should follow, not {shown(count)}"
+            raise FormatError.at(name, first + 1, f"{message}; complete the frame")
+        atoms = [_atom(line, name, number) for number, line in enumerate(lines[first + 2 : after], first + 3)]
+        box = _box(lines[after], name, after + 1)
+        models.append(Model(str(len(models) + 1), atoms, set(), box))
+        titles.append(lines[first].strip())
+        first = after + 1
+    return [replace(raw, comments=titles[:1]) for raw in curves(models, name)]
+
+
+def _atom(line: str, name: str, number: int) -> Atom:
+    points = [place for place, sign in enumerate(line) if sign == "." and place >= 20]
+    width = points[1] - points[0] if len(points) > 2 else 8  # more decimals have wider columns
+    cells = [line[at : at + width].strip() for at in range(20, 20 + 3 * width, width)]
+    try:
+        x, y, z = numbers(cells)
+    except ValueError:
+        raise FormatError.at(
+            name, number, f"{shown(' '.join(cells))} are no three numbers; x y z should stand from column 21"
+        ) from None
+    return Atom(
+        False, line[10:15].strip(), "", line[5:10].strip(), "", 0, line[:5].strip(), (x, y, z), number
+    )
+
+
+def _box(line: str, name: str, number: int) -> Box | None:
+    try:
+        cells = numbers(line.split())
+        edges = np.diag(cells[:3])
+        rest: Sequence[float] = cells[3:] or [0.0] * 6
+        edges[[0, 0, 1, 1, 2, 2], [1, 2, 0, 2, 0, 1]] = rest
+    except (ValueError, IndexError):
+        raise FormatError.at(
+            name, number, f"{shown(line.strip())} is no box; its three or nine numbers end the frame"
+        ) from None
+    there = np.isfinite(edges).all() and np.linalg.det(edges) != 0
+    return Box(np.zeros(3), edges, np.full(3, True)) if there else None
