@@ -46,6 +46,10 @@ KNOWN = 0.5
 """A rope whose edges are at most so long, in radii, is polished from a shape that is known; for one of longer
 edges other shapes may be better."""
 
+SHORT = 1.5
+"""A first rung with so many times the vertices of a known shape, or less, is left out: it costs more than it
+saves."""
+
 GROOVED = 0.1
 """Beads with edges longer than this, in radii, lie in grooves between those that they touch, which may hold
 the rope up by a ten-thousandth of its length; shorter ones by a hundred-thousandth at most."""
@@ -231,6 +235,8 @@ class Plan:
         self.curve, self.from_known = self.known, True
         self.shape, self.shapes, self.failed = None, [], []
         self._climb()
+        if len(self.rungs) > 1 and self.rungs[0][1] < SHORT * sum(map(len, self.known)):
+            self.rungs.pop(0)
         n, length = self.rungs[-1][1], measure(self.known).l_p
         if length > GROOVED * n:  # the grooves of the shape's beads are left by way of more of them
             self.rungs.insert(-1, ("climb", n))
