@@ -1,15 +1,14 @@
 """`sono identify FILE...`: what knots or links curves are."""
 
-import shlex
 import sys
 from contextlib import nullcontext
-from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
 
 from sono import tables
 from sono.cli import options
+from sono.cli.each import each, file_of
 
 if TYPE_CHECKING:
     from sono.formats import Close
@@ -39,41 +38,32 @@ def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: op
     which is in Regina's alpha (x) and z (y). The crossings are those of the curve's simplified diagram. Its
     PD code gives for each crossing the four edges, counter-clockwise from the incoming lower one.
     """
-    # Imported here, since numpy would make --help wait.
-    from sono.formats import FormatError
-    from sono.jobs.sources import curves
-
-    failed = False
     with nullcontext() if pd else shown.table() as table:
-        for source in chain.from_iterable(curves(given, close) for given in sources):
-            try:
-                doubts, found = _identified(source)
-            except FormatError as error:
-                failed = True
-                options.complain(str(error))
-                continue
+
+        def name(source: "Source") -> None:
+            doubts, found = _identified(source)
             for doubt in doubts:
                 shown.tell(doubt)
             if table:
                 table.row(row(str(source), found))
             else:
                 _write_pd(str(source), found, shown)
-    sys.exit(1 if failed else 0)
+
+        code = each(sources, close, name)
+    sys.exit(code)
 
 
 def _identified(source: "Source") -> "tuple[list[str], Identity]":
     """Return what is doubtful about a curve, and what it is. Raises `FormatError`."""
-    from sono import naming, starts
+    # Imported here, since numpy would make --help wait.
+    from sono import naming
     from sono._core import CurveError
     from sono.formats import FormatError
     from sono.invariants import TooEntangledError
     from sono.jobs.curvefiles import located
     from sono.patience import patiently
 
-    if source.knot and starts.knows(source.knot):
-        start = f"`sono start {shlex.quote(source.knot)} | sono identify -`"
-        raise FormatError(f"{source}: no such file; identify takes files; {start} identifies a loose start")
-    file = source.read()
+    file = file_of(source, "identify", "identifies")
     try:
         return file.doubts(), patiently(lambda: naming.identify(file.components))
     except TooEntangledError as error:

@@ -1,16 +1,15 @@
 """`sono measure FILE...`: what curves measure, as they are."""
 
-import shlex
 import sys
 from dataclasses import replace
 from functools import partial
-from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
 
 from sono import tables
 from sono.cli import options
+from sono.cli.each import each, file_of
 
 if TYPE_CHECKING:
     from sono.formats import Close
@@ -33,40 +32,29 @@ def command(sources: tuple[str, ...], residual: bool, close: "Close | None", sho
     forces and bending couples balance as well as they can (non-negative least squares): 0 for a tight rope,
     below 1e-6 for a polished one.
     """
-    # Imported here, since numpy would make --help wait.
-    from sono.formats import FormatError
-    from sono.jobs.sources import curves
-
     if residual and "residual" not in shown.columns:
         shown = replace(shown, columns=[*shown.columns, "residual"])
-    failed = False
     with shown.table() as table:
-        for source in chain.from_iterable(curves(given, close) for given in sources):
-            try:
-                row, doubts = _measured(source, "residual" in shown.columns)
-            except FormatError as error:
-                failed = True
-                options.complain(str(error))
-                continue
+
+        def measure(source: "Source") -> None:
+            row, doubts = _measured(source, "residual" in shown.columns)
             for doubt in doubts:
                 shown.tell(doubt)
             table.row(row)
-    sys.exit(1 if failed else 0)
+
+        code = each(sources, close, measure)
+    sys.exit(code)
 
 
 def _measured(source: "Source", residual: bool) -> tuple[tables.Row, list[str]]:
     """Return the row of a curve, and what is doubtful about it. Raises `FormatError`."""
-    from sono import starts
+    # Imported here, since numpy would make --help wait.
     from sono.curve import forces
-    from sono.formats import FormatError
     from sono.jobs.curvefiles import measures_of
     from sono.jobs.result import as_row
     from sono.patience import patiently
 
-    if source.knot and starts.knows(source.knot):
-        start = f"`sono start {shlex.quote(source.knot)} | sono measure -`"
-        raise FormatError(f"{source}: no such file; measure takes files; {start} measures a loose start")
-    curve = source.read()
+    curve = file_of(source, "measure", "measures")
     measures = measures_of(curve)
     doubts = curve.doubts()
     file = f"{curve.name}:{curve.key}" if curve.key else curve.name

@@ -1,0 +1,39 @@
+"""What commands share that do something with each curve of files, one after the other."""
+
+import shlex
+from collections.abc import Callable, Sequence
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from sono.cli.streams import complain
+
+if TYPE_CHECKING:
+    from sono.formats import Close, VertexFile
+    from sono.jobs.sources import Source
+
+
+def each(given: Sequence[str], close: "Close | None", work: "Callable[[Source], None]") -> int:
+    """Work on each curve of the files given; a wrong one spoils only itself. Return the exit code."""
+    # Imported here, since numpy would make --help wait.
+    from sono.formats import FormatError
+    from sono.jobs.sources import curves
+
+    failed = False
+    for source in chain.from_iterable(curves(one, close) for one in given):
+        try:
+            work(source)
+        except FormatError as error:
+            failed = True
+            complain(str(error))
+    return int(failed)
+
+
+def file_of(source: "Source", command: str, does: str) -> "VertexFile":
+    """Read the file of a command that takes no names of knots, and `does` so. Raises `FormatError`."""
+    from sono import starts
+    from sono.formats import FormatError
+
+    if source.knot and starts.knows(source.knot):
+        start = f"`sono start {shlex.quote(source.knot)} | sono {command} -`"
+        raise FormatError(f"{source}: no such file; {command} takes files; {start} {does} a loose start")
+    return source.read()
