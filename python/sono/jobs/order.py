@@ -2,6 +2,7 @@
 
 import os
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -41,8 +42,9 @@ class Order:
     resume: bool = False
     known: bool = True
 
+    @cached_property
     def shape(self) -> Components | None:
-        """Return the shape of the atlas that the rope begins with, if there is one."""
+        """The shape of the atlas that the rope begins with, if there is one."""
         knot = self.source.knot if self.known and self.method == "both" else None
         return starts.known(knot) if knot else None
 
@@ -83,6 +85,5 @@ def tolerance(order: Order) -> float:
 
 def made_from(order: Order, file: VertexFile) -> str:
     """Tell what a rope is made from: its curve, method and settings, as a digest."""
-    shape = order.shape()
-    more = [digest(replace(file, components=list(shape)))] if shape else []
+    more = [digest(replace(file, components=list(order.shape)))] if order.shape else []
     return digest(file, order.method, order.trials, order.settings, *more)

@@ -193,9 +193,7 @@ class Task:
         """Return the run at its beginning."""
         try:
             job = self.job
-            return Run(
-                self.file.components, list(self.todo), job.settings, job.method, job.trials, job.shape()
-            )
+            return Run(self.file.components, list(self.todo), job.settings, job.method, job.trials, job.shape)
         except ValueError as error:
             raise FormatError(f"{self.file.name}: {error}") from error
 
