@@ -1,10 +1,12 @@
 """What the tests of the command line share: `sono` in this process, and `sono` as a process of its own."""
 
 import os
+import random
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -81,3 +83,10 @@ def spawn(folder: Path) -> Iterator[Spawn]:
 def vertices(path: Path) -> str:
     """The rows of a file, without its comments."""
     return "".join(row for row in path.read_text().splitlines(True) if not row.startswith("#"))
+
+
+def a_tenth(names: Iterable[str]) -> list[str]:
+    """A tenth of names, another one each time, but the same in all workers of one run."""
+    one_run = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(time.time_ns()))
+    every = sorted(names)
+    return random.Random(one_run).sample(every, -(-len(every) // 10))

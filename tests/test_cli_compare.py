@@ -8,7 +8,7 @@ from conftest import QUICK, Sono
 from sono import formats, starts, tables
 from sono.tables import published
 
-ATLAS = Path(__file__).parent.parent / "knots" / "atlas.tsv"
+ATLAS = Path(__file__).parent.parent / "knots" / "atlas" / "knots.tsv"
 
 TABLE = "knot\tn\tL_a\tL_c\n8_4\t359\t71.45\t71.69\nm3_1\t164\t32.75\t32.7\nHopf\t60\t25.1\t-\n"
 

@@ -49,7 +49,7 @@ def test_a_name_that_is_too_long(sono: Sono) -> None:
     name = "k" * 5000
     result = sono("start", "3_1", "-o", name)
     assert (result.exit_code, result.stderr) == (1, f"sono: {name}: cannot be written: File name too long\n")
-    assert f"{name}/atlas.tsv: no such file" in sono("atlas", "--folder", name).stderr.replace("\n", "")
+    assert f"{name}: no atlas is there" in sono("atlas", "--folder", name).stderr.replace("\n", "")
     assert sono("atlas", name, "--folder", ".").exit_code == 2
 
 

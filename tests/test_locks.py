@@ -114,7 +114,7 @@ def test_two_updates_of_an_atlas(folder: Path, sono: Sono, spawn: Spawn) -> None
         time.sleep(0.05)
     second = sono("atlas", "--update", "--folder", "kept", "--checkpoint", "elsewhere", "3_1")
     assert second.exit_code == 2
-    assert "atlas.tsv: another sono is about to write it" in second.stderr
+    assert "knots.tsv: another sono is about to write it" in second.stderr
     first.send_signal(signal.SIGKILL)
 
 

@@ -1,38 +1,56 @@
-"""The shapes that the package carries: they are the atlas's knots, and lead to the atlas's ropes."""
-
-from pathlib import Path
+"""The ropes that the package carries: they are the knots of their names, and what tightening begins with."""
 
 import numpy as np
 import pytest
-from conftest import Sono
+from conftest import Sono, a_tenth
 
 import sono as api
-from sono import formats, measure, starts
+from sono import measure, starts
 from sono.invariants import fingerprint
-from sono.jobs.atlas import Atlas
-from sono.jobs.shapes import refresh
-from sono.starts import shapes
+from sono.starts import archive, shapes
 from sono.tightening.run import Run
 
-KNOTS = Path(__file__).parent.parent / "knots"
-LENGTHS = shapes.lengths()
+ROPES = {knot: archive.unpacked(data) for knot, data in shapes.ropes("knots").items()}
 
 
-def test_there_is_one_of_each_knot_in_the_atlas() -> None:
-    rows = Atlas(KNOTS).rows()
-    assert {knot: row["l_a"] for knot, row in rows.items()} == LENGTHS
-    assert shapes.FILE.stat().st_size < 2000 * len(rows)  # type: ignore[attr-defined]
+def test_a_rope_comes_back_as_it_was_but_for_rounding() -> None:
+    ropes = {"3_1": starts.known("3_1") or [], "5^2_1": starts.start("5^2_1"), "far": [1e4 * np.eye(3)]}
+    packed = {name: archive.packed(rope) for name, rope in ropes.items()}
+    for name, data in archive.read(archive.written(packed)).items():
+        for one, other in zip(archive.unpacked(data), ropes[name], strict=True):
+            assert one == pytest.approx(other, abs=0.6 / archive.PARTS)
+            assert archive.packed(archive.unpacked(data)) == data
+    assert sum(map(len, packed.values())) < 10 * sum(len(c) for rope in ropes.values() for c in rope)
 
 
-@pytest.mark.parametrize("knot", LENGTHS)
-def test_shapes_are_the_knots_of_their_names(knot: str) -> None:
-    shape = starts.known(knot)
-    assert shape
-    assert fingerprint(shape) == fingerprint(starts.start(knot))
-    measures = measure(shape)
-    assert measures.l_p / measures.r_s == pytest.approx(LENGTHS[knot], rel=0.01)
-    assert measures.r_s == pytest.approx(1, abs=0.01)
-    assert measures.dl == pytest.approx(shapes.EDGE, rel=0.01)
+def test_a_place_is_that_of_the_knot_whatever_it_is_called() -> None:
+    for family, knot, spellings in (
+        ("knots", "8_20", ["8.20", "K8n1", "8:1:20", "8_20"]),
+        ("knots", "11n_34", ["K11n34", "11N_34", "11n34"]),
+        ("links", "L5a1", ["Whitehead", "5^2_1", "L5a1{1}", "L5a1"]),
+        ("links", "L2a1", ["Hopf", "2^2_1"]),
+        ("torus", "T(3,4)", ["T(4,3)", "T(-3,-4)", "T( 3 , 4 )", "t[3,4]"]),
+        ("composites", "3_1#m3_1", ["square", "m3_1#3_1", "3_1 # mirror image of 3_1"]),
+        ("composites", "3_1#4_1", ["4_1#3_1", "m4_1#3_1"]),
+        ("composites", "3_1#3_1#m3_1", ["3_1#(m3_1#3_1)"]),
+    ):
+        assert {shapes.place(name) for name in spellings} == {shapes.Place(family, knot)}
+    for family, knot, spellings in (
+        ("knots", "8_20", ["m8_20", "m8.20"]),
+        ("torus", "T(3,4)", ["T(-3,4)", "mT(4,3)"]),
+        ("composites", "3_1#4_1", ["m3_1#4_1", "m(3_1#4_1)"]),
+        ("composites", "3_1#3_1#m3_1", ["m3_1#m3_1#3_1"]),
+    ):
+        assert {shapes.place(name) for name in spellings} == {shapes.Place(family, knot, mirrored=True)}
+
+
+@pytest.mark.parametrize("knot", a_tenth(ROPES))
+def test_ropes_are_tight_and_of_the_knots_of_their_names(knot: str) -> None:
+    rope = ROPES[knot]
+    assert fingerprint(rope) == fingerprint(starts.start(knot))
+    measures = measure(rope)
+    assert measures.r_s == pytest.approx(1, abs=1e-6)
+    assert measures.dispersion < 1e-6
 
 
 def test_names_in_other_spellings_are_compared() -> None:
@@ -58,11 +76,11 @@ def test_mirror_images_and_names_in_any_case() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("knot", ["3_1", "6_2", "8_18", "9_40", "10_161"])
 def test_a_shape_leads_to_the_rope_of_the_atlas(knot: str) -> None:
-    rope = formats.read(KNOTS / "tight" / f"{knot}.txt").components
+    rope = ROPES[knot]
     n = sum(map(len, rope))
     tight = api.tighten(knot, n)
     assert (tight.converged, tight.known, tight.shapes) == (True, True, [])
-    assert (tight.measures.l_a or 0) < (measure(rope).l_a or 0) + 1e-3
+    assert (tight.measures.l_a or 0) < (measure(rope).l_a or 0) + 1e-6
     assert fingerprint(tight.curve) == fingerprint(starts.start(knot))
 
 
@@ -86,7 +104,7 @@ def test_a_shape_that_is_another_knot_is_not_used() -> None:
 def test_the_command_says_what_it_began_with(sono: Sono) -> None:
     known = sono("tighten", "4_1", "-n", "120", "-o", "k.txt")
     assert known.exit_code == 0
-    assert "begun with the atlas's shape; --start drawn begins with a loose one" in known.stderr
+    assert "begun with the atlas's rope; --start drawn begins with a loose one" in known.stderr
     drawn = sono("tighten", "4_1", "-n", "120", "--start", "drawn", "--trials", "2", "-o", "d.txt")
     assert "2 trials" in drawn.stderr
     assert "atlas" not in drawn.stderr
@@ -100,32 +118,12 @@ def test_the_command_says_what_it_began_with(sono: Sono) -> None:
 
 def test_the_shape_is_written(sono: Sono) -> None:
     result = sono("start", "m8_18", "--known")
-    assert result.stdout.startswith("# m8_18, the shape of the atlas\n")
+    assert result.stdout.startswith("# m8_18, the rope of the atlas\n")
     assert api.start("m8_18", known=True) == api.Curve(starts.known("m8_18") or [])
     assert result.stdout.count("\n") == 1 + len(api.start("m8_18", known=True)[0])
     for wrong in (("T(2,59)",), ("8_18", "--variant", "1"), ("--braid", "1 1 1"), ("8_99",)):
         refused = sono("start", *wrong, "--known")
         assert refused.exit_code == 2
-    assert "the atlas has no shape of 'T(2,59)'" in sono("start", "T(2,59)", "--known").stderr
-    with pytest.raises(ValueError, match="the atlas has one shape"):
+    assert "the atlas has no rope of 'T(2,59)'" in sono("start", "T(2,59)", "--known").stderr
+    with pytest.raises(ValueError, match="the atlas has one rope"):
         api.start("8_18", 3, known=True)
-
-
-def test_what_is_shorter_takes_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    hopf = api.tighten("Hopf", 126)
-    (tmp_path / "tight").mkdir()
-    formats.write(tmp_path / "tight" / "Hopf.txt", hopf.curve)
-    (tmp_path / "atlas.tsv").write_text(f"knot\tl_a\nHopf\t{hopf.measures.l_a}\n")
-    own = tmp_path / "shapes.npz"
-    own.write_bytes(shapes.packed({"3_1": shapes.Shape(shapes.shape("3_1"), LENGTHS["3_1"])}))
-    monkeypatch.setattr(shapes, "FILE", own)
-    shapes.lengths.cache_clear()
-    assert refresh(Atlas(tmp_path)) == ["Hopf"]
-    assert refresh(Atlas(tmp_path)) == []
-    assert list(shapes.lengths()) == ["3_1", "Hopf"]
-    found = starts.known("hopf")
-    assert found
-    assert len(found) == 2
-    assert fingerprint(found) == fingerprint(starts.start("Hopf"))
-    monkeypatch.undo()
-    shapes.lengths.cache_clear()

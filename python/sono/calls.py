@@ -98,18 +98,17 @@ def start(name: str, variant: int = 0, *, known: bool = False) -> Curve:
 
     A name may be a code, such as "pd:[(1,5,2,4),(3,1,4,6),(5,3,6,2)]", "dt:4 6 2" or "gauss:1 -2 3 -1 2 -3";
     docs/names.md has all kinds. Each `variant` is another conformation of the same type, drawn from a planar
-    diagram if it is negative. If `known`, it is the shape that the atlas has of the knot instead, tight at
-    R_s = 1 but for its coarse edges of 0.45 and its coordinates in thousandths. Raises `ValueError`, with the
-    nearest known name, for one that is not known.
+    diagram if it is negative. If `known`, it is the rope that the atlas has of the knot or link instead,
+    tight at R_s = 1 on edges of about 0.2. Raises `ValueError`, with the nearest known name, for others.
 
     >>> start("3_1"), len(start("P(-2,3,7)")), len(start("gauss:1 -2 | 2 -1")), start("3_1", known=True)
-    (Curve(69 vertices), 1, 2, Curve(73 vertices))
+    (Curve(69 vertices), 1, 2, Curve(164 vertices))
     """
     if not isinstance(name, str):
         raise ValueError(f"{name!r} is no name of a knot")
     if known:
         if variant:
-            raise ValueError(f"variant = {variant}: the atlas has one shape of a knot")
+            raise ValueError(f"variant = {variant}: the atlas has one rope of a knot")
         return Curve(_known(name))
     return Curve(starts.start(name, whole("variant", variant, -(10**12))))
 
@@ -170,7 +169,7 @@ def tighten(
     most 1, as far as n is a whole number. With the method "both" SONO finds shapes in up to `trials` trials
     and the polish makes the best one exact; "sono" and "polish" do without the other. `settings` are the
     parameters of both engines, or some of them by name; the seed is one. A knot by its name begins with the
-    shape that the atlas has of it, without any trials; if `known` is False, with the loose one of `start`.
+    rope that the atlas has of it, without any trials; if `known` is False, with the loose one of `start`.
 
     `watch` is called about ten times a second. If it returns True, and after `time_limit` seconds, the best
     state so far is returned, with `converged` False; what it raises ends the run and passes through.
@@ -246,10 +245,10 @@ def search(
 
 
 def _known(name: str) -> list[Any]:
-    """Return the atlas's shape of a knot. Raises `ValueError` if there is none."""
+    """Return the atlas's rope of a knot. Raises `ValueError` if there is none."""
     if (shape := starts.known(name)) is None:
         starts.start(name)  # says what is wrong with it, if it is no name at all
-        raise ValueError(f"the atlas has no shape of {name!r}")
+        raise ValueError(f"the atlas has no rope of {name!r}")
     return list(shape)
 
 

@@ -38,7 +38,7 @@ def command(sources: tuple[str, ...], published_file: str | None, shown: options
     name. `-` is standard input:
 
     \b
-      sono measure knots/tight/*.txt | sono compare -
+      sono compare knots/atlas/knots.tsv
     """
     from sono.formats import FormatError
     from sono.tables import published

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     metavar="SEED",
     help="Entangle the curve, isotopically.",
 )
-@click.option("--known", is_flag=True, help="The shape that the atlas has of it, on coarse beads.")
+@click.option("--known", is_flag=True, help="The tight rope that the atlas has of it.")
 @click.option("--list", "list_names", is_flag=True, help="List the names that are built in.")
 @click.option("-o", "--output", default="-", show_default=True, metavar="FILE", help="Where to write it.")
 @click.option("--force", is_flag=True, help="Overwrite FILE.")
@@ -70,7 +70,7 @@ def command(
     if word is not None and variant < 0:
         raise click.UsageError(f"--variant {variant}: a braid word has no planar diagram; give 0 or more")
     if known and (variant or word is not None):
-        raise click.UsageError("--known is the one shape of a NAME in the atlas, without a --variant")
+        raise click.UsageError("--known is the one rope of a NAME in the atlas, without a --variant")
     places.check_suffix(output)
     if output != "-" and os.path.exists(output) and not force:
         raise click.UsageError(f"{output} exists; --force overwrites it")
@@ -102,7 +102,7 @@ def _drawn(name: str | None, word: str | None, variant: int, known: bool) -> "tu
     else:
         title = name or ""
         curve = sono.start(title, known=True) if known else starts.start(title, variant)
-    title += ", the shape of the atlas" if known else ""
+    title += ", the rope of the atlas" if known else ""
     title += f", variant {variant}" if variant else ""
     return title, curve
 

@@ -89,7 +89,7 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     type=click.Choice(["known", "drawn"]),
     default="known",
     show_default=True,
-    help="For a NAME, by the method both: polish the shape that the atlas has of it, or tighten a loose one.",
+    help="For a NAME, by the method both: polish the rope that the atlas has of it, or tighten a loose one.",
 )
 @options.output(
     "File or folder/ for the vertices, - for standard output.  [default: NAME.nN.txt, or NAME.dlDL.txt, here]"

@@ -1,45 +1,43 @@
-"""The atlas: the shortest known tight rope of every knot, with its bounds and where it came from.
+"""The atlas: the shortest known tight rope of every knot and link, with its bounds and where it came from.
 
-A folder holds `tight/NAME.txt`, the vertices with edges of about 0.2 radii, and `atlas.tsv`, a row each. The
-figures of a row are what its file measures; L_c, an upper bound on the ropelength of the smooth knot, is
-given once more on finer edges, where it is nearer to it. A knot's type is checked before its row is written.
+A folder has for each family, such as the prime knots, a table and an archive of ropes with edges of about 0.2
+radii. The figures of a row are what its rope measures as it is in the archive. L_c is an upper bound on the
+ropelength of the smooth knot; where what is published is below it, it is given once more on finer edges, on
+which it is nearer to that. A knot's type is checked before its row is written.
 """
 
-import io
 import math
-import os
-import re
 import threading
 from collections import defaultdict
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from sono import formats, starts, tables
+from sono import starts
 from sono.curve import Components, forces, measure
 from sono.formats import FormatError
-from sono.formats.ropefile import TIGHT, Header, Searched
-from sono.invariants import fingerprint, homfly
-from sono.jobs.curvefiles import KEPT_RESIDUAL, measured, rope_in
+from sono.formats.ropefile import TIGHT, Searched
+from sono.invariants import fingerprint
+from sono.jobs.curvefiles import KEPT_RESIDUAL, rope_in
+from sono.jobs.family import Family
+from sono.naming import identify
 from sono.searching.minima import same_edges
 from sono.searching.trials import FINE_EDGE, Watch, unwatched
+from sono.starts import archive
+from sono.starts.shapes import FAMILIES, place
 from sono.tables import Row, Value, published
 from sono.tightening import Tight, polished
 
-FINEST_EDGE = 0.03
-"""Edge length at which L_c is given once more, in radii."""
-
-DECIMALS = 10
-"""Decimals of the coordinates in the atlas, which rounds lengths by less than the polish leaves open."""
+FINER_EDGES = (0.1, 0.03)
+"""Edge lengths at which L_c is given once more, in radii, the first where it is at most what is published."""
 
 SHORTER = 1e-7
 """A rope is shorter than another if its L_a is by so much, relatively."""
 
-COLUMNS = (
-    *("knot", "n", "dl", "l_p", "l_c", "l_a", "residual", "n_fine", "l_c_fine"),
-    *("published", "source", "l_a_difference", "l_c_difference", "seed", "variant", "type"),
-)
+NAMED = {"knots", "links", "composites"}
+"""Families whose types have names that a curve is given."""
 
 
 @dataclass(frozen=True)
@@ -47,17 +45,23 @@ class Atlas:
     """An atlas in a folder, which one process at a time may change."""
 
     folder: Path
-    lock: threading.Lock = field(default_factory=threading.Lock)
-    knot_locks: dict[str, threading.Lock] = field(default_factory=lambda: defaultdict(threading.Lock))
+    locks: dict[str, threading.Lock] = field(default_factory=lambda: defaultdict(threading.Lock))
 
-    def path(self, knot: str) -> str:
-        """Return where the vertices of a knot are."""
-        return os.fspath(self.folder / "tight" / f"{knot}.txt")
+    @cached_property
+    def families(self) -> dict[str, Family]:
+        """The families, by their names."""
+        return {name: Family(self.folder, name) for name in FAMILIES}
 
     def rows(self) -> dict[str, Row]:
         """Return the rows there are, by knot. Raises `FormatError`."""
-        table = self.folder / "atlas.tsv"
-        return {str(row["knot"]): row for row in tables.read(os.fspath(table))} if table.exists() else {}
+        return {knot: row for family in self.families.values() for knot, row in family.rows.items()}
+
+    def rope(self, knot: str) -> Components:
+        """Return the rope of a knot. Raises `FormatError` if there is none."""
+        family = self._family(knot)
+        if knot not in family.ropes:
+            raise FormatError(f"{knot}: is not in {family.files[1]}; --update adds a knot by its name")
+        return archive.unpacked(family.ropes[knot])
 
     def take(self, knot: str, file: str, watch: Watch = unwatched) -> Row:
         """Take a rope for a knot if it is shorter than the one there is; return the knot's row.
@@ -66,133 +70,107 @@ class Atlas:
         that cannot be read or written, `ValueError` for a rope that does not get tight, or of another type
         than its name says.
         """
-        with self.knot_locks[knot]:
-            return self._take(knot, file, watch)
+        with self.locks[knot]:
+            curve, searched = _fit(file, watch)
+            confirmed_type(knot, curve, file)
+            there = self._family(knot).rows.get(knot)
+            if there and (measure(curve).l_a or math.inf) >= (1 - SHORTER) * float(there["l_a"] or 0):
+                return self.checked(knot)
+            curve, finer = _finer(knot, curve, watch)
+            type = confirmed_type(knot, curve, file)
+            origin = (searched.variant, searched.seed) if searched else (None, None)
+            row = {**_measured(knot, curve), **finer, "variant": origin[0], "seed": origin[1], "type": type}
+            row = dict(published.beside(row, published.table()))
+            self._family(knot).put(row, archive.packed(curve))
+            return row
 
-    def _take(self, knot: str, file: str, watch: Watch) -> Row:
-        curve = self._fit(file, watch)
-        confirmed_type(knot, curve, file)
-        if not self._is_shorter(knot, curve):
-            row = self.rows().get(knot)
-            if row and self._is_current(row):
-                return row
-            file = self.path(knot)
-            curve = measured(file)[0].components
-        origin = rope_in(file)[2].searched
-        fine = _polished(curve, FINEST_EDGE, watch)
+    def checked(self, knot: str) -> Row:
+        """Measure the rope of a knot and compare it with its row. Raises `FormatError` and `ValueError`."""
+        family = self._family(knot)
+        row = family.rows.get(knot)
+        if not row:
+            raise FormatError(
+                f"{knot}: is no file and not in {family.files[0]}; --update adds a knot by its name"
+            )
+        curve = self.rope(knot)
+        again = _measured(knot, curve)
+        if not all(_agree(row.get(key), again[key]) for key in ("n", "dl", "l_p", "l_c", "l_a")):
+            raise ValueError(
+                f"{knot}: its row is not that of its rope; take both from one version of the atlas"
+            )
+        return {**row, "type": confirmed_type(knot, curve, family.files[1])}
+
+    def _family(self, knot: str) -> Family:
+        return self.families[place(knot).family]
+
+
+def confirmed_type(knot: str, curve: Components, file: str) -> str:
+    """Return how it is known that a curve is the knot of this name: "proven", "invariants" or "fingerprint".
+
+    The last is for torus types with many crossings: see `invariants.fingerprint`. Raises `ValueError` if the
+    curve is another knot.
+    """
+    start = starts.start(knot)
+    wrong, by = fingerprint(curve) != fingerprint(start), "fingerprint"
+    if not wrong and place(knot).family in NAMED:
+        found, there = identify(curve), identify(start)
+        wrong, by = found.names != there.names or found.homfly != there.homfly, found.known
+    if wrong:
+        raise ValueError(f"{file}: is of another knot type than {knot}; remove it or name it otherwise")
+    return by
+
+
+def _fit(file: str, watch: Watch) -> tuple[Components, Searched | None]:
+    """Return the rope of a file, tight at R_s = 1 on edges of FINE_EDGE, centred, and where it is from."""
+    curve, m, header = rope_in(file)
+    components = [component / m.r_s for component in curve.components]
+    fits = same_edges(m.dl / m.r_s, FINE_EDGE)
+    if not (fits and header.status == TIGHT and forces(components).residual <= KEPT_RESIDUAL):
+        polished = _polished(components, FINE_EDGE, watch)
+        if not polished.converged:
+            raise ValueError(f"{file}: does not get tight with {polished.measures.n} vertices")
+        components = list(polished.curve)
+    return _centred(components), header.searched
+
+
+def _finer(knot: str, curve: Components, watch: Watch) -> tuple[Components, Row]:
+    """Give L_c on edges so fine that it is at most what is published, and the rope, perhaps shorter."""
+    bound = published.beside({"knot": knot}, published.table())["published"]
+    finer: dict[str, Value] = {"n_fine": None, "l_c_fine": None}
+    if not isinstance(bound, float) or (measure(curve).l_c or math.inf) <= bound:
+        return curve, finer
+    for edge in FINER_EDGES:
+        fine = _polished(curve, edge, watch)
         # It may have left a groove of the beads that held it up.
         again = _polished(fine.curve, FINE_EDGE, watch)
         if again.converged and (again.measures.l_a or math.inf) < (measure(curve).l_a or math.inf):
             curve = _centred(again.curve)
-        for rope in (curve, fine.curve):
-            confirmed_type(knot, rope, file)
-        if self._is_shorter(knot, curve):
-            self._make()
-            searched = Searched(origin.variant, origin.seed) if origin else None
-            header = Header.of(knot, TIGHT, measure(curve), searched=searched)
-            formats.write(self.path(knot), curve, header.lines())
+        confirmed_type(knot, list(fine.curve), knot)
         finer = {"n_fine": fine.measures.n, "l_c_fine": fine.measures.l_c}
-        row = published.beside({**self.measured(knot), **finer}, published.table())
-        self._write(row)
-        return row
+        if (fine.measures.l_c or math.inf) <= bound:
+            break
+    return curve, finer
 
-    def _is_shorter(self, knot: str, curve: Components) -> bool:
-        """Tell whether a rope is shorter than what there is. Raises `FormatError` and `ValueError`."""
-        path = self.path(knot)
-        if not os.path.exists(path):
-            return True
-        there, m = measured(path)
-        confirmed_type(knot, there.components, path)
-        return (measure(curve).l_a or math.inf) < (1 - SHORTER) * (m.l_a or 0)
 
-    def _make(self) -> None:
-        """Make the folders. Raises `FormatError`."""
-        try:
-            (self.folder / "tight").mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise FormatError(f"{self.folder}: cannot be made: {error.strerror}") from error
-
-    def _fit(self, file: str, watch: Watch) -> Components:
-        """Return the rope of a file: tight, of radius 1, with edges of FINE_EDGE, centred."""
-        curve, m, header = rope_in(file)
-        components = [component / m.r_s for component in curve.components]
-        fits = same_edges(m.dl / m.r_s, FINE_EDGE)
-        if not (fits and header.status == TIGHT and forces(components).residual <= KEPT_RESIDUAL):
-            polished = _polished(components, FINE_EDGE, watch)
-            if not polished.converged:
-                raise ValueError(f"{file}: does not get tight with {polished.measures.n} vertices")
-            components = list(polished.curve)
-        return _centred(components)
-
-    def measured(self, knot: str) -> Row:
-        """Return the row of a knot but for the finer level, its type confirmed.
-
-        Raises `FormatError` and `ValueError`.
-        """
-        file, m, header = rope_in(self.path(knot))
-        found = header.searched
-        variant, seed = (found.variant, found.seed) if found else (None, None)
-        return {
-            **{"knot": knot, "n": m.n, "dl": m.dl, "l_p": m.l_p, "l_c": m.l_c, "l_a": m.l_a},
-            **{"residual": forces(file.components).residual, "seed": seed, "variant": variant},
-            "type": confirmed_type(knot, file.components, self.path(knot)),
-        }
-
-    def checked(self, knot: str) -> Row:
-        """Measure the file of a knot and compare it with its row. Raises `FormatError` and `ValueError`."""
-        row = self.rows().get(knot)
-        if not row:
-            table = self.folder / "atlas.tsv"
-            raise FormatError(f"{knot}: is no file and not in {table}; --update adds a knot by its name")
-        again = self.measured(knot)
-        if not self._is_current(row):
-            raise ValueError(f"{knot}: its row is not that of its file; --update mends it")
-        return {**row, "type": again["type"]}
-
-    def _is_current(self, row: Row) -> bool:
-        """Tell whether a row has the figures of its file."""
-        m = measured(self.path(str(row["knot"])))[1]
-        same = (_agree(row.get(key), getattr(m, key)) for key in ("n", "dl", "l_p", "l_c", "l_a"))
-        return row.get("l_c_fine") is not None and all(same)
-
-    def _write(self, row: Row) -> None:
-        with self.lock:
-            rows = self.rows() | {str(row["knot"]): row}
-            text = io.StringIO()
-            with tables.writer("tsv", COLUMNS, text) as table:
-                for knot in sorted(rows, key=_by_number):
-                    table.row(rows[knot])
-            formats.save(os.fspath(self.folder / "atlas.tsv"), text.getvalue())
+def _measured(knot: str, curve: Components) -> dict[str, Value]:
+    """Return what a rope measures."""
+    m = measure(curve)
+    residual = forces([component / m.r_s for component in curve]).residual
+    return {
+        **{"knot": knot, "n": m.n, "dl": m.dl, "l_p": m.l_p, "l_c": m.l_c, "l_a": m.l_a},
+        "residual": residual,
+    }
 
 
 def _polished(curve: Components, edge: float, watch: Watch) -> Tight:
     """Polish a rope on edges of this length."""
-    n = round(measure(curve).l_p / edge)
-    return polished(curve, n, watch)
+    return polished(curve, round(measure(curve).l_p / edge), watch)
 
 
 def _centred(curve: Components) -> Components:
-    """Return a rope round the origin, with as many decimals as its file has."""
+    """Return a rope round the origin, as an archive has it."""
     centre = np.vstack(curve).mean(axis=0)
-    return [(component - centre).round(DECIMALS) for component in curve]
-
-
-def confirmed_type(knot: str, curve: Components, file: str) -> str:
-    """Return in which invariant a file's curve agrees with the knot of this name: "homfly" or "alexander".
-
-    Where its polynomial needs the extra sono[identify] it is the weaker one. A few pairs of knots, such as
-    8_16 and 10_156, agree in both. Raises `ValueError` if the curve is another knot.
-    """
-    start = starts.start(knot)
-    wrong = fingerprint(curve) != fingerprint(start)
-    try:
-        wrong = wrong or homfly(curve) != homfly(start)
-        by = "homfly"
-    except ImportError:
-        by = "alexander"
-    if wrong:
-        raise ValueError(f"{file}: is of another knot type than {knot}; remove it or name it otherwise")
-    return by
+    return archive.unpacked(archive.packed([component - centre for component in curve]))
 
 
 def _agree(one: Value, other: Value) -> bool:
@@ -200,7 +178,3 @@ def _agree(one: Value, other: Value) -> bool:
     if isinstance(one, int | float) and isinstance(other, int | float):
         return math.isclose(one, other, rel_tol=1e-11)
     return one == other
-
-
-def _by_number(knot: str) -> list[int]:
-    return [int(number) for number in re.findall(r"\d+", knot)]

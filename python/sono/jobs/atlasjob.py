@@ -6,12 +6,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
+from sono import starts
 from sono.formats.ropefile import TIGHT
 from sono.jobs.atlas import Atlas
 from sono.jobs.result import Result, Show
 from sono.jobs.search import SearchJob
 from sono.jobs.sources import Source
 from sono.jobs.workers import Workers
+from sono.starts.shapes import place
 from sono.tightening import Stopped
 
 
@@ -28,8 +30,9 @@ class AtlasJob:
     def of(cls, atlas: Atlas, source: str, search: Callable[[str], SearchJob] | None) -> Self:
         """Make the job of a name, which may be searched, or of a file called NAME.txt or NAME.more.txt."""
         if os.path.isfile(source):
-            return cls(atlas, Path(source).stem.split(".")[0], None, source)
-        return cls(atlas, source, search(source) if search else None, None)
+            return cls(atlas, place(Path(source).stem.split(".")[0]).knot, None, source)
+        knot = place(source).knot if starts.knows(source) else source
+        return cls(atlas, knot, search(knot) if search else None, None)
 
     def results(self, show: Show) -> Iterator[Result]:
         """Do it."""

@@ -139,7 +139,7 @@ class Task:
         """Say how the curve was made ready, which shapes the trials found, and which of them failed."""
         notes = []
         if tight.known:
-            notes += ["begun with the atlas's shape; --start drawn begins with a loose one"]
+            notes += ["begun with the atlas's rope; --start drawn begins with a loose one"]
         if tight.loosened:
             notes += ["as it is the curve holds only a thin rope; it was loosened first, by isotopic moves"]
         if len(tight.shapes) + len(tight.failed) > 1:

@@ -1,91 +1,104 @@
-"""The shortest shapes known of knots: the ropes of the atlas, on coarse beads, as the package carries them.
+"""The shortest ropes known: those of the atlas that the package carries, in one archive for each family.
 
-They are what a rope of any number of beads is polished from. A shape has R_s = 1 and edges of about `EDGE`,
-and its coordinates are whole thousandths of the radius.
+They are tight at R_s = 1, on edges of about 0.2 radii, and what a rope of any number of beads begins with.
 
->>> shape = known("m8_18")
->>> len(shape), 160 < len(shape[0]) < 170, known("T(2,59)") is None
+>>> rope = known("m8_18")
+>>> len(rope), 370 < len(rope[0]) < 380, known("T(2,103)") is None
 (1, True, True)
 """
 
-import io
-import zipfile
-from collections.abc import Mapping
+import re
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
-from typing import Any
-
-import numpy as np
 
 from sono.curve import Components
+from sono.starts import archive
 from sono.starts.drawing import mirror
+from sono.starts.links import link_row, oriented_like
+from sono.starts.names import start
+from sono.starts.spelling import Part, spelled, summands
 from sono.starts.tabled import tabled_name
 
-EDGE = 0.45
-"""Edge length of the shapes, in radii."""
+FAMILIES = ("knots", "links", "composites", "torus")
+"""Prime knots and prime links by their names in the tables, connected sums, and torus knots and links."""
 
-PARTS = 1000
-"""Their coordinates are whole numbers of so many parts of the radius."""
+FOLDER: Traversable = resources.files("sono").joinpath("data", "atlas")
 
-FILE: Traversable = resources.files("sono").joinpath("data", "shapes.npz")
+ACHIRAL = {"4_1", "6_3", "8_3", "8_9", "8_12", "8_17", "8_18"}
+"""Knots to 8 crossings that are their own mirror images, as parts of sums."""
+
+_TORUS = re.compile(r"T[(\[{](-?\d{1,9}),(-?\d{1,9})[)\]}]", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
-class Shape:
-    """The shape of a knot, and the L_a of the rope in the atlas that it was made from."""
+class Place:
+    """Where the atlas has the knot or link of a name, if it has it: its family, and its name there.
 
-    curve: Components
-    l_a: float
+    >>> place("mT(5,2)"), place("5^2_1").knot, place("4_1#m3_1")
+    (Place(family='torus', knot='T(2,5)', mirrored=True), 'L5a1', Place(family='composites', \
+knot='3_1#4_1', mirrored=True))
+    """
+
+    family: str
+    knot: str
+    mirrored: bool = False
+
+
+def place(name: str) -> Place:
+    """Return the place of a knot or link, by a name in any spelling."""
+    parts = summands(name)
+    if len(parts) > 1:
+        return Place("composites", *_sum(parts))
+    plain, mirrored = parts[0].name, parts[0].mirrored
+    if torus := _TORUS.fullmatch(re.sub(r"\s", "", plain)):
+        p, q = map(int, torus.groups())
+        return Place("torus", f"T({min(abs(p), abs(q))},{max(abs(p), abs(q))})", mirrored != (p * q < 0))
+    if row := link_row(spelled(plain)):
+        return Place("links", row["link"].split("{")[0], mirrored)
+    return Place("knots", tabled_name(plain).casefold(), mirrored)
 
 
 def known(name: str) -> Components | None:
-    """Return the shortest shape known of a knot that the atlas has, or None."""
-    plain = name.strip()
-    if plain[:1].casefold() == "m":
-        found = known(plain[1:])
-        return found and mirror(found)
-    there = {knot.casefold(): knot for knot in lengths()}
-    knot = there.get(tabled_name(plain).casefold())
-    return shape(knot) if knot else None
+    """Return the shortest rope known of a knot or link, or None.
+
+    A link is oriented as `starts.start` has it.
+    """
+    where = place(name)
+    data = ropes(where.family).get(where.knot)
+    if data is None:
+        return None
+    rope = archive.unpacked(data)
+    rope = mirror(rope) if where.mirrored else rope
+    if where.family != "links":
+        return rope
+    with suppress(ValueError):  # another orientation may be that of the mirror image
+        return oriented_like(rope, start(name))
+    return None
 
 
 @cache
-def lengths() -> dict[str, float]:
-    """Return the L_a of the atlas's rope for each knot that has a shape."""
-    with np.load(io.BytesIO(FILE.read_bytes())) as file:
-        return dict(zip(file["names"].tolist(), file["l_a"].tolist(), strict=True))
+def ropes(family: str) -> dict[str, bytes]:
+    """Return the ropes of a family as the package has them, by their names."""
+    file = FOLDER.joinpath(f"{family}.zip")
+    return archive.read(file.read_bytes()) if file.is_file() else {}
 
 
-def shape(knot: str) -> Components:
-    """Return the shape of one of the knots in `lengths`."""
-    with np.load(io.BytesIO(FILE.read_bytes())) as file:
-        steps, begin = file[f"{knot}/steps"], file[f"{knot}/begin"]
-    components = np.split(steps.astype(np.int64), np.cumsum(begin[:-1, 0]))
-    return [
-        (first + steps.cumsum(axis=0)) / PARTS for first, steps in zip(begin[:, 1:], components, strict=True)
-    ]
+def _sum(parts: Sequence[Part]) -> tuple[str, bool]:
+    """Return the name of a sum or of its mirror image, with as few m as may be, and whether it is that."""
+    ways = []
+    for mirrored in (False, True):
+        signs = [
+            (tabled_name(part.name), part.mirrored != mirrored and part.name not in ACHIRAL) for part in parts
+        ]
+        ordered = sorted(signs, key=lambda sign: (_numbers(sign[0]), sign[1]))
+        ways.append((sum(m for _, m in ordered), "#".join("m" * m + name for name, m in ordered), mirrored))
+    _, name, mirrored = min(ways, key=lambda way: way[0])
+    return name, mirrored
 
 
-def packed(shapes: Mapping[str, Shape]) -> bytes:
-    """Return the bytes of a file of shapes by their knots.
-
-    It is NumPy's, with two arrays for each knot: the steps (n, 3) from vertex to vertex, 0 to the first of a
-    component, and where each component begins (k, 4), its number of vertices ahead of the first of them.
-    """
-    names, l_a = np.array(list(shapes)), np.array([known.l_a for known in shapes.values()])
-    arrays: dict[str, Any] = {"names": names, "l_a": l_a}
-    for knot, known in shapes.items():
-        whole = [np.rint(PARTS * component).astype(np.int32) for component in known.curve]
-        steps = [np.diff(vertices, axis=0, prepend=vertices[:1]) for vertices in whole]
-        arrays[f"{knot}/steps"] = np.vstack(steps).astype(np.int16)
-        arrays[f"{knot}/begin"] = np.array([[len(v), *v[0]] for v in whole], np.int32)
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w") as archive:
-        for name, array in arrays.items():
-            member = io.BytesIO()
-            np.save(member, array)
-            # With no time of writing, so that the same shapes are the same bytes.
-            archive.writestr(zipfile.ZipInfo(f"{name}.npy"), member.getvalue(), zipfile.ZIP_DEFLATED, 9)
-    return data.getvalue()
+def _numbers(name: str) -> list[int]:
+    return [int(number) for number in re.findall(r"\d+", name)]

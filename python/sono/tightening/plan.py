@@ -237,10 +237,6 @@ class Plan:
         self._climb()
         if len(self.rungs) > 1 and self.rungs[0][1] < SHORT * sum(map(len, self.known)):
             self.rungs.pop(0)
-        n, length = self.rungs[-1][1], measure(self.known).l_p
-        if length > GROOVED * n:  # the grooves of the shape's beads are left by way of more of them
-            self.rungs.insert(-1, ("climb", n))
-            self.rungs.insert(-1, ("climb", 2 * n))
 
     def _next_trial(self) -> None:
         """Plan another trial, or, where there were enough, the climb from the best shape."""
