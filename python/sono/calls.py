@@ -265,4 +265,4 @@ def _components(vertices: Rope) -> list[Any]:
         return as_components(cast("CurveLike", vertices))
     if not starts.knows(vertices) and (os.path.exists(vertices) or os.path.splitext(vertices)[1]):
         raise ValueError(f"{vertices!r} is no name of a knot; sono.read reads a file")
-    return list(starts.start(vertices))
+    return list(starts.drawn(vertices))

@@ -21,7 +21,7 @@ from sono.starts.drawing import mirror
 from sono.starts.links import link_row, oriented_like
 from sono.starts.names import start
 from sono.starts.spelling import Part, spelled, summands
-from sono.starts.tabled import tabled_name
+from sono.starts.tabled import NoTableError, tabled_name
 
 FAMILIES = ("knots", "links", "composites", "torus")
 """Prime knots and prime links by their names in the tables, connected sums, and torus knots and links."""
@@ -78,6 +78,19 @@ def known(name: str) -> Components | None:
     with suppress(ValueError):  # another orientation may be that of the mirror image
         return oriented_like(rope, start(name))
     return None
+
+
+def drawn(name: str) -> Components:
+    """Return what `starts.start` draws, or the rope known where its table is not installed.
+
+    Raises `ValueError` for a name that is neither.
+    """
+    try:
+        return start(name)
+    except NoTableError:
+        if (rope := known(name)) is None:
+            raise
+        return rope
 
 
 @cache
