@@ -92,6 +92,9 @@ def test_what_was_checked_of_a_record(sono: Sono) -> None:
         "sono: shorter than Klotz 2026: T(4,4)",
         "sono: shorter than Klotz, Maldonado 2021: T(-25,26)",
     ]
+    coarse = sono("compare", "-", input="knot\tn\tL_a\tL_c\n6^3_3\t90\t50.23\t51.62\n")
+    assert "too coarse to tell" in coarse.stderr
+    assert "shorter than" not in coarse.stderr
     assert "DataTightLinksKlotz26.txt of July 2026" in claims[0]
     assert "77.977" in claims[0]
 

@@ -47,6 +47,7 @@ def must_be_known(prime: Gauss) -> bool:
     return len(right) <= (MOST_OF_KNOTS if len(passages) == 1 else MOST_OF_LINKS)
 
 
+@cache
 def is_amphichiral(name: str) -> bool:
     """Tell whether a type of the table is its own mirror image.
 

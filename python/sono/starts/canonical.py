@@ -24,6 +24,10 @@ MOST_DRAWN = 2 * MOST_OF_KNOTS
 """Crossings of a diagram that is drawn to see whether the tables have it."""
 
 
+LONGEST = 1000
+"""Letters of a name that is looked at."""
+
+
 @cache
 def canonical(name: str) -> str:
     """Return one name for all names of a knot or link, for its mirror image, and for all orientations.
@@ -35,6 +39,8 @@ def canonical(name: str) -> str:
     >>> [canonical(name) for name in ("L6a4{0,1}", "P(-2,3,7)", "3_1#0_1", "1 -2 1 -2", "foo")]
     ['L6a4', '12n_242', '3_1', '4_1', 'foo']
     """
+    if len(name) > LONGEST:
+        return name
     parts = [one for part in summands(name) for one in _parts(part) if one.name != "0_1"]
     if not parts:
         return "0_1"
@@ -43,7 +49,7 @@ def canonical(name: str) -> str:
     either = [
         sorted((_unhanded(part, turned, len(parts)) for part in parts), key=_order) for turned in (0, 1)
     ]
-    return min(("#".join(map(str, sum)) for sum in either), key=lambda sum: (sum.count("m"), sum))
+    return min(("#".join(map(str, each)) for each in either), key=lambda text: (text.count("m"), text))
 
 
 def _parts(part: Part) -> list[Part]:
@@ -59,6 +65,8 @@ def _parts(part: Part) -> list[Part]:
     numbers = [int(number) for number in match.groups()] if match else []
     if pattern == CHAIN and numbers[0] > 3:
         return [Part(f"chain{numbers[0]}", part.mirrored)]
+    if pattern == TORUS and 1 in map(abs, numbers):
+        return []
     if pattern == TORUS and not _is_small(*map(abs, numbers)):
         p, q = sorted(map(abs, numbers))
         return [Part(f"T({p},{q})", part.mirrored != (numbers[0] * numbers[1] < 0))]

@@ -94,12 +94,11 @@ def _compared(row: Row, value: Row, told: Sequence[str]) -> Row:
 
 def claims(rows: Sequence[Row]) -> Iterator[str]:
     """Say what was checked of what reached us at second hand, where ropes, after `beside`, are shorter."""
+    shorter = [row for row in rows if below(row["l_a_difference"], 0) and not is_too_coarse(row)]
     for key, source in reference.sources().items():
-        shorter = [
-            str(row["knot"]) for row in rows if row["source"] == key and below(row["l_a_difference"], 0)
-        ]
-        if shorter and source.at_second_hand:
-            yield f"shorter than {key}: {listed(shorter)}; {source.place}; {source.checked}"
+        names = [str(row["knot"]) for row in shorter if row["source"] == key]
+        if names and source.at_second_hand:
+            yield f"shorter than {key}: {listed(names)}; {source.place}; {source.checked}"
 
 
 def below(difference: Value, bound: float) -> bool:
