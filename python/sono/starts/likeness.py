@@ -26,7 +26,8 @@ def may_be_alike(one: Components, other: Components) -> bool:
     if len(one) != len(other):
         return False
     if len(one) == 1:
-        return fingerprint(one) in (fingerprint(other), fingerprint(mirror(other)))
+        ours = fingerprint(one)
+        return ours == fingerprint(other) or ours == fingerprint(mirror(other))
     return _linked(one) == _linked(other) and any(
         _knots(one) == _knots(image) and (len(one) > MOST_TURNED or bool(_turned(one) & _turned(image)))
         for image in (other, mirror(other))

@@ -41,7 +41,7 @@ FAR_BELOW = 0.02
 
 
 def table() -> Mapping[str, Row]:
-    """Return what ropes are compared with, by the names of `starts.canonical`: see `reference`."""
+    """Return what ropes are compared with, by any name of a knot or link: see `reference`."""
     return reference.Compared()
 
 

@@ -3,12 +3,12 @@
 A ropelength over the diameter of the rope is doubled here, and nowhere else. The kinds are kept apart:
 
 - exact: proven to be the least;
-- bound: some curve is so long, by its vertices; no shorter one of this kind is known here;
-- numerical: what a program gave for a polygon;
-- critical: that of a curve that is in balance, but need not be shortest;
-- estimate: what the least is expected to be, which no curve need have. No rope is compared with it.
+- bound: that of a curve, which its source gives as an upper bound;
+- numerical: what a program gave for a polygon, of which its source says no more;
+- critical: that of a curve in balance, which need not be the shortest;
+- estimate: what the least is expected to be. No curve need have it, and no rope is compared with it.
 
->>> [(row["published"], row["kind"], row["source"]) for row in values("chain3")]
+>>> [(row["published"], row["kind"], row["source"]) for row in values("Hopf#Hopf")]
 [(41.69911184307752, 'exact', 'Cantarella, Kusner, Sullivan 2002')]
 >>> [(row["kind"], row["printed"], row["per"], row["published"]) for row in values("3_1")][2]
 ('numerical', 16.372861, 'diameter', 32.745722)
@@ -52,7 +52,7 @@ class Source:
 
 
 class Compared(Mapping[str, Row]):
-    """The rows that ropes are compared with, by the names of `starts.canonical`; chains of any length too."""
+    """The rows that ropes are compared with, by any names; chains of any length too."""
 
     def __getitem__(self, name: str) -> Row:
         """Return the first row of `values` that is no estimate."""
@@ -62,7 +62,7 @@ class Compared(Mapping[str, Row]):
         return row
 
     def __iter__(self) -> Iterator[str]:
-        """Give the names that the table has, without chains."""
+        """Give the names that the table has, those of `starts.canonical`, without chains."""
         return (name for name in _printed() if name in self)
 
     def __len__(self) -> int:
@@ -77,13 +77,16 @@ def sources() -> dict[str, Source]:
 
 
 def values(name: str) -> list[Row]:
-    """Return what is published under a name of `starts.canonical`, in the order of rank and length.
+    """Return what is published on what has this name, in the order of rank and length.
 
-    The rows have `published`, over the radius, `kind`, `source`, and `printed` over what `per` says.
+    The rows have `knot`, `published`, over the radius, `kind`, `source`, and `printed` over what `per` says.
     """
+    name = starts.canonical(name)
     rings = RINGS.get(name) or int((re.fullmatch(r"chain(\d{1,9})", name) or [0, 0])[1])
-    rows = [_row(_chain(rings), "exact", CHAINS)] if rings else []
-    rows += [_row(float(row["printed"]), row["kind"], row["source"]) for row in _printed().get(name, [])]
+    rows = [_row(name, _chain(rings), "exact", CHAINS)] if rings else []
+    rows += [
+        _row(name, float(row["printed"]), row["kind"], row["source"]) for row in _printed().get(name, [])
+    ]
     return sorted(rows, key=lambda row: (RANKS[str(row["kind"])], row["published"]))
 
 
@@ -95,10 +98,10 @@ def _printed() -> dict[str, list[dict[str, str]]]:
     return found
 
 
-def _row(printed: float, kind: str, source: str) -> Row:
+def _row(knot: str, printed: float, kind: str, source: str) -> Row:
     per = sources()[source].per
-    published = printed * FACTORS[per]
-    return {"published": published, "kind": kind, "source": source, "printed": printed, "per": per}
+    length = printed * FACTORS[per]
+    return {"knot": knot, "published": length, "kind": kind, "source": source, "printed": printed, "per": per}
 
 
 def _chain(rings: int) -> float:
