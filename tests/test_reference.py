@@ -62,7 +62,7 @@ def test_torus_links_grow() -> None:
 def test_chains_are_circles_and_stadiums(rings: int) -> None:
     row = published.table()[f"chain{rings}"]
     assert row["published"] == pytest.approx(8 * math.pi + (rings - 2) * (4 * math.pi + 4))
-    assert (row["kind"], row["source"]) == ("exact", "Cantarella, Kusner, Sullivan 2002")
+    assert (row["kind"], row["source"]) == ("exact", "CKS 2002")
 
 
 def test_the_unknot_is_a_circle_and_nothing_else_is() -> None:

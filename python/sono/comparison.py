@@ -46,7 +46,7 @@ def compare(rope: Rope, knot: str) -> Comparison:
     32.7436
     >>> found = compare("Hopf", "2^2_1")
     >>> found.kind, found.source, round(found.published, 4)
-    ('exact', 'Cantarella, Kusner, Sullivan 2002', 25.1327)
+    ('exact', 'CKS 2002', 25.1327)
     """
     if not isinstance(knot, str) or not starts.knows(knot):
         raise ValueError(f"{knot!r} is no name of a knot")

@@ -54,7 +54,7 @@ COLUMNS = {
         Column("sweeps", "sweeps", "sweeps", "d", 9),
         Column("factorisations", "factorisations", "factorisations", "d", 14),
         Column("published", "published", "published", ".4f", 10),
-        Column("source", "source", "source", "", 18),
+        Column("source", "source", "source", "", 23),
         Column("kind", "kind", "kind", "", 9),
         Column("printed", "printed", "printed", ".4f", 10),
         Column("per", "per", "per", "", 8),

@@ -9,7 +9,7 @@ A ropelength over the diameter of the rope is doubled here, and nowhere else. Th
 - estimate: what the least is expected to be. No curve need have it, and no rope is compared with it.
 
 >>> [(row["published"], row["kind"], row["source"]) for row in values("Hopf#Hopf")]
-[(41.69911184307752, 'exact', 'Cantarella, Kusner, Sullivan 2002')]
+[(41.69911184307752, 'exact', 'CKS 2002')]
 >>> [(row["kind"], row["printed"], row["per"], row["published"]) for row in values("3_1")][2]
 ('numerical', 16.372861, 'diameter', 32.745722)
 """
@@ -29,7 +29,7 @@ FACTORS = {"radius": 1, "diameter": 2}
 RANKS = {"exact": 0, "bound": 1, "numerical": 2, "critical": 2, "estimate": 3}
 """The kinds: a rope is compared with the shortest of the first rank there is."""
 
-CHAINS = "Cantarella, Kusner, Sullivan 2002"
+CHAINS = "CKS 2002"
 
 RINGS = {"0_1": 1, "L2a1": 2}
 """Chains that have other names, and their rings."""
