@@ -143,3 +143,18 @@ def test_a_knot_of_a_table_that_is_not_installed_begins_with_its_rope(
         assert [c.tolist() for c in starts.drawn("K11a1")] == [c.tolist() for c in ROPES["3_1"]]
     finally:
         shapes.ropes.cache_clear()
+
+
+def test_a_place_has_the_name_that_published_values_go_by() -> None:
+    names = [
+        "8.20",
+        "Whitehead",
+        "Hopf",
+        "m5_1#3_1",
+        "5_1#m3_1",
+        "square",
+        "m4_1#3_1",
+        "3_1#m3_1#m3_1",
+        "T(24,-19)",
+    ]
+    assert [shapes.place(name).knot for name in names] == [starts.canonical(name) for name in names]
