@@ -18,7 +18,6 @@ SHIPPED = Atlas(KNOTS).rows()
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(trials, "GENTLE", 1)
     own = tmp_path / "shapes.npz"  # so that what is found here does not get into the package
     own.write_bytes(shapes.FILE.read_bytes())
     monkeypatch.setattr(shapes, "FILE", own)
