@@ -16,11 +16,6 @@ SHIPPED = Atlas(Path(str(shapes.FOLDER)))
 ROWS = SHIPPED.rows()
 
 
-@pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trials, "GENTLE", 1)
-
-
 def tight(path: Path, knot: str, n: int) -> str:
     """Write a tight rope, as a search would."""
     shape = trials.attempt(trials.Source.of(starts.start(knot), knot), 0)

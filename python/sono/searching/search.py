@@ -29,10 +29,13 @@ from sono.searching.minima import (
 from sono.searching.trials import Source, attempt, refine, reseat
 from sono.tightening import Stopped
 
-ROUND = 8
+ROUND = 4
 
-REFINED = 2
-"""After each round of so many trials so many of its shapes are refined."""
+REFINED = 1
+"""After each round of so many trials so many shapes are refined at most, those that may be the shortest."""
+
+BLUR = 3e-3
+"""Share of its length by which a shape gets shorter at most when it is refined."""
 
 LAG = 32
 """Rounds that may pass at most until a refined shape is waited for."""
@@ -173,9 +176,13 @@ class Search:
         due = self.trials + ROUND * min(max(self.trials // (2 * ROUND), 1), LAG)
         under_way = [shape.radii for _, shape in self.refining]
         fresh = [s for s in self.shapes if not any(alike(s.radii, radii) for radii in under_way)]
-        for shape in fresh[:most]:
+        for shape in list(filter(self._may_win, fresh))[:most]:
             self.refining.append((due, shape))
             waiting.append(submit(refine, shape))
+
+    def _may_win(self, shape: Shape) -> bool:
+        """Tell whether a shape may become shorter than the shortest minimum."""
+        return not self.minima or (1 - BLUR) * shape.length < self.minima[0].length
 
     def _take(self, shape: Shape) -> None:
         """Count a trial, and remember its shape if it is new and may lead to a minimum that is kept."""

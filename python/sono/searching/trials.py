@@ -18,7 +18,7 @@ from sono.searching.minima import Minimum, Shape, has_edges, radii_of_gyration, 
 from sono.starts.scramble import scramble
 from sono.tightening import polished
 from sono.tightening.engines import done, status_of
-from sono.tightening.trial import HOT, Recipe, Trial
+from sono.tightening.trial import Recipe, Trial
 
 FINE_EDGE = 0.2
 """Edge length at which minima are compared."""
@@ -26,19 +26,12 @@ FINE_EDGE = 0.2
 POLISHES = 3
 """Attempts to polish a shape on edges of that length, as its own length changes meanwhile."""
 
-HOT_ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
-
-GENTLE_ANNEAL = {"anneal_sweeps": 5_000, "anneal_tolerance": 0.1}
-
-GENTLE = 2 / 3
-"""The anneals of trials, and the share of the gentle ones. A hot anneal crosses barriers and leads many
-starts to the same few shapes; a gentle one, of fewer sweeps, keeps rarer shapes that are near the start."""
+ANNEAL = {"anneal_sweeps": 4_000, "anneal_tolerance": 0.1}
+"""The anneal of a trial, which shakes the rope a little. A hot one of 100,000 sweeps leads a trial to the
+shortest shape half again as often, but costs as much as five others: the start decides."""
 
 ANNEAL_EDGES = (0.8, 1.2)
 """Edges of the anneal, of other lengths each time: the coarser, the higher the barriers that it crosses."""
-
-OFFSETS = 2
-"""Offsets along the rope from which a shape is refined; the shortest result counts."""
 
 MOST_BEADS = 10_000
 """Beads up to which a trial goes on. A thin start may jam at once; the rest is hours."""
@@ -87,9 +80,8 @@ class Source:
 
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
-    anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
     seed = abs(variant)
-    recipe = Recipe({}, anneal | {"seed": seed}, seed, _spread(*ANNEAL_EDGES, variant))
+    recipe = Recipe({}, ANNEAL | {"seed": seed}, seed, _spread(*ANNEAL_EDGES, variant))
     try:
         trial = Trial(recipe, source.start(variant, watch))
         engine = done(trial.begin(), watch)
@@ -150,20 +142,16 @@ def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
     return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
 
 
-def _spread(least: float, most: float, number: int, step: float = (math.sqrt(5) - 1) / 2) -> float:
-    """Spread numbers evenly over a range by multiples of an irrational step, by default the golden ratio."""
-    return least + (most - least) * ((0.5 + number * step) % 1)
+def _spread(least: float, most: float, number: int) -> float:
+    """Spread numbers evenly over a range by multiples of the golden ratio."""
+    return least + (most - least) * ((0.5 + number * (math.sqrt(5) - 1) / 2) % 1)
 
 
 def _polished(curve: Components, n: int, watch: Watch) -> Polish | None:
-    """Polish a rope on n vertices from a few offsets along it, and return the shortest, if there is any."""
-    found = []
-    for offset in range(OFFSETS):
-        with suppress(*FAILURES):
-            found.append(done(Polish(curve, n, False, offset), watch))
-    return min(
-        found, key=lambda polish: (not _is_tight(polish), status_of(polish).best.l_a_or_l_p), default=None
-    )
+    """Polish a rope on n vertices, unless that fails."""
+    with suppress(*FAILURES):
+        return done(Polish(curve, n, False, 0), watch)
+    return None
 
 
 def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
