@@ -20,6 +20,7 @@ from contextlib import suppress
 from sono.curve import Components
 from sono.starts import codes
 from sono.starts.braids import braid
+from sono.starts.bundles import bundle
 from sono.starts.diagrams import Diagram, reduced
 from sono.starts.drawing import mirror
 from sono.starts.flypes import flyped
@@ -74,7 +75,7 @@ def names() -> list[str]:
 
 def has_variants(name: str) -> bool:
     """Tell whether further variants of this name are more than scrambles of the plain one."""
-    return all(map(_is_drawn, summands(name)))
+    return all(_is_drawn(part) or _is_torus(part) for part in summands(name))
 
 
 def knows(name: str) -> bool:
@@ -104,8 +105,8 @@ def start(name: str, variant: int = 0) -> Components:
     `variant` is another conformation of the same type. Those of knots and links in the tables are random arc
     presentations, some of them with more columns than needed, and the negative ones are drawn from a planar
     diagram after random flypes. Pretzels, two-bridge links and codes are always drawn from a diagram, which
-    the negative variants flype first. All others are
-    isotopic scrambles. Raises ValueError, with the nearest known name, for anything else.
+    the negative variants flype first. Torus types are bundles (see `bundles`), and their negative variants,
+    and all of others, isotopic scrambles. Raises ValueError, with the nearest known name, for anything else.
     """
     parts = summands(name)
     if not all(part.name for part in parts):
@@ -143,11 +144,13 @@ def _drawn(part: Part, variant: int) -> Components:
     found = matched(name, _CURVES)
     if not found:
         raise unknown(part, names())
-    if variant < 0:
-        raise ValueError(f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more")
     pattern, match = found
+    if pattern == TORUS and variant > 0:
+        return bundle(int(match[1]), int(match[2]), variant)
+    if pattern != TORUS and variant < 0:
+        raise ValueError(f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more")
     curve = _CURVES[pattern](match)
-    return scramble(curve, variant) if variant else curve
+    return scramble(curve, abs(variant)) if variant else curve
 
 
 def matched(name: str, patterns: Iterable[str]) -> tuple[str, re.Match[str]] | None:
@@ -160,6 +163,12 @@ def matched(name: str, patterns: Iterable[str]) -> tuple[str, re.Match[str]] | N
 def _is_drawn(part: Part) -> bool:
     """Tell whether this looks like the name of something that has a planar diagram."""
     return bool(is_tabled(spelled(part.name)) or matched(part.name, _DIAGRAMS))
+
+
+def _is_torus(part: Part) -> bool:
+    """Tell whether this is the name of a torus type, which has bundles."""
+    found = matched(part.name, _CURVES)
+    return found is not None and found[0] == TORUS
 
 
 def _integers(text: str) -> list[int]:
