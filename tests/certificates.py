@@ -1,108 +1,135 @@
-"""Certificates of polygons, made slowly and to sixty digits, for tests of what checks them."""
+"""Certificates of polygons, made slowly and to sixty digits, for the tests of what checks them."""
 
 import hashlib
+import json
 import math
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal, localcontext
-from typing import Any
+from itertools import pairwise
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from sono.formats import text
 
+Parts: TypeAlias = list[Any]
+"""Components, (n, 3) each."""
+
+Fields: TypeAlias = dict[str, Any]
+
 PI = Decimal("3.141592653589793238462643383279502884197169399375105820974944")
 
 
-def content_of(components: list[Any]) -> bytes:
+def content_of(components: Parts) -> bytes:
     """The file that `sono` writes."""
     return text.write([np.asarray(part, float) for part in components], ["a rope"]).encode()
 
 
-def certificate(components: list[Any], digits: int = 20) -> dict[str, Any]:
-    """The certificate of a polygon, whose decimals have so many digits."""
+def coded(fields: Fields) -> bytes:
+    return json.dumps(fields, indent=1).encode()
+
+
+def certificate(components: Parts, digits: int = 20) -> Fields:
+    """The certificate of a polygon, with decimals of so many digits."""
     with localcontext(Context(prec=60, Emin=-9999, Emax=9999)):
-        parts = [_Part(np.asarray(part, float)) for part in components]
-        bends = [(_root(p.rad2[i] + p.s**2 / 4), "bend", [[c, i]]) for c, p in enumerate(parts) for i in p.rad2]
-        r, condition, vertices = min([*bends, *_pairs(parts, min(bends)[0])])
+        loops = [Loop(np.asarray(part, float)) for part in components]
+        bends = [((p.rad2[i] + p.s**2 / 4).sqrt(), [[c, i]]) for c, p in enumerate(loops) for i in p.rad2]
+        r, places = min(bends + _pairs(loops))
+        least = max(p.s for p in loops) / 1000  # where nothing is true, as no figure may be 0
         down, up = (Context(prec=digits, rounding=way) for way in (ROUND_FLOOR, ROUND_CEILING))
-        r, s = r.normalize(down), max(p.s for p in parts).normalize(up)
-        r_c = _root(max(r**2 - s**2 / 4, Decimal(0))).normalize(down)
-        length = sum(p.length for p in parts).normalize(up)
-        return {
+        fields = {
             "format": "sono certificate",
             "version": 1,
             "program": "tests",
             "file": "rope.txt",
             "sha256": hashlib.sha256(content_of(components)).hexdigest(),
             "curve": None,
-            "n": sum(p.n for p in parts),
-            "components": [p.n for p in parts],
-            "s": str(s),
-            "min_rad": str(min(p.m for p in parts).normalize(down)),
-            "r": str(r),
-            "r_c": str(r_c),
-            "length": str(length),
-            "l_c": str((length / r_c if r_c else Decimal(1)).normalize(up)),
-            "decided_by": {"condition": condition, "vertices": vertices},
+            "n": sum(p.n for p in loops),
+            "components": [p.n for p in loops],
+            "s": str(max(p.s for p in loops).normalize(up)),
+            "min_rad": str(max(least, min(p.m for p in loops)).normalize(down)),
+            "r": str(max(least, r).normalize(down)),
+            "length": str(sum((p.length for p in loops), Decimal(0)).normalize(up)),
+            "decided_by": {"condition": "bend" if len(places) == 1 else "pair", "vertices": places},
         }
+    return concluded(fields, digits)
 
 
-class _Part:
-    """A component: edges `s_i`, their longest `s`, squares of Rad_i, the least Rad_i `m`, Length(K_P)."""
+def concluded(fields: Fields, digits: int = 20) -> Fields:
+    """The certificate with what follows from r, s and length."""
+    with localcontext(Context(prec=60, Emin=-9999, Emax=9999)):
+        down, up = (Context(prec=digits, rounding=way) for way in (ROUND_FLOOR, ROUND_CEILING))
+        r, s = Decimal(fields["r"]), Decimal(fields["s"])
+        r_c = max(r**2 - s**2 / 4, r**2 / 100).sqrt().normalize(down)
+        l_c = (Decimal(fields["length"]) / r_c).normalize(up)
+    return {**fields, "r_c": str(r_c), "l_c": str(l_c)}
+
+
+def nudged(decimal: str, steps: int) -> str:
+    """A decimal, so many steps of its twentieth digit up or down."""
+    value = Decimal(decimal)
+    return str(value + steps * Decimal(1).scaleb(value.adjusted() - 19))
+
+
+class Loop:
+    """A component: edges `s_i`, the longest `s`, squares of Rad_i, the least Rad_i `m`, Length(K_P)."""
 
     def __init__(self, vertices: Any) -> None:
-        self.vertices = vertices
-        self.n = len(vertices)
+        self.vertices, self.n = vertices, len(vertices)
         points = [[Decimal(x) for x in row] for row in vertices.tolist()]
-        edges = [[b - a for a, b in zip(p, q, strict=True)] for p, q in zip(points, points[1:] + points[:1], strict=True)]
-        self.s_i = [_root(sum(x * x for x in edge)) for edge in edges]
+        edges = [[b - a for a, b in zip(p, q, strict=True)] for p, q in pairwise([*points, points[0]])]
+        self.s_i = [sum((x * x for x in edge), Decimal(0)).sqrt() for edge in edges]
         self.s = max(self.s_i)
         self.rad2: dict[int, Decimal] = {}
-        self.length = sum(self.s_i)
+        self.length, self.turns = sum(self.s_i, Decimal(0)), list[float]()
         for i, edge in enumerate(edges):
-            before, both = edges[i - 1], self.s_i[i - 1] * self.s_i[i]
-            dot = sum(a * b for a, b in zip(before, edge, strict=True))
-            tangent = min(self.s_i[i - 1], self.s_i[i]) / 2
-            u2 = (both - dot) / (both + dot) if both + dot > Decimal("1e-40") * both else Decimal("1e40")
-            if u2 > Decimal("1e-40"):
-                self.rad2[i] = tangent**2 / u2
-                u = _root(u2)
-                self.length -= 2 * tangent * (1 - _arctan(u) / u)
-        self.m = _root(min(self.rad2.values()))
+            dot = sum((a * b for a, b in zip(edges[i - 1], edge, strict=True)), Decimal(0))
+            both, tangent = self.s_i[i - 1] * self.s_i[i], min(self.s_i[i - 1], self.s_i[i]) / 2
+            cosine = dot / both
+            self.turns.append(math.degrees(math.acos(max(-1, min(1, float(cosine))))))
+            if abs(cosine) < 1 - Decimal("1e-45"):
+                u = ((1 - cosine) / (1 + cosine)).sqrt()
+                self.rad2[i] = (tangent / u) ** 2
+                self.length -= 2 * tangent * (1 - arctan(u) / u)
+            elif cosine < 0:
+                self.rad2[i] = Decimal(0)
+        self.m = min(self.rad2.values()).sqrt()
+
+    def counts(self, i: int, j: int) -> bool:
+        """Whether a pair of its vertices counts."""
+        along = sum(self.s_i[min(i, j) : max(i, j)])
+        return min(along, sum(self.s_i) - along) >= PI * self.m - self.s
 
 
-def _pairs(parts: list[_Part], most: Decimal) -> list[Any]:
-    """Half the distances of the nearest pairs that count, by floating point up to the last step."""
+def _pairs(loops: list[Loop]) -> list[Any]:
+    """Half the least distances of pairs that count; floating point only leaves out what is far from them."""
     found = []
-    for c, one in enumerate(parts):
-        for d, other in list(enumerate(parts))[c:]:
-            far = np.linalg.norm(one.vertices[:, None] / float(most) - other.vertices[None] / float(most), axis=2)
+    for c, one in enumerate(loops):
+        for d, other in enumerate(loops[c:], c):
+            size = max(abs(one.vertices).max(), abs(other.vertices).max())
+            far = np.linalg.norm((one.vertices / size)[:, None] - other.vertices / size, axis=2)
             if c == d:
-                along = np.cumsum([0, *map(float, one.s_i)])
-                apart = abs(along[:-1, None] - along[None, :-1])
-                counts = np.minimum(apart, along[-1] - apart) >= float(PI * one.m - one.s)
-                far = np.where(counts, far, np.inf)
-            if far.min() < np.inf:
-                i, j = np.unravel_index(far.argmin(), far.shape)
-                ends = zip(one.vertices[i].tolist(), other.vertices[j].tolist(), strict=True)
-                half = _root(sum((Decimal(a) - Decimal(b)) ** 2 for a, b in ends)) / 2
-                found.append((half, "pair", [[c, int(i)], [d, int(j)]]))
+                at = np.array([float(sum(one.s_i[:i]) / one.s) for i in range(one.n + 1)])
+                apart = abs(at[:-1, None] - at[:-1])
+                least = float((PI * one.m - one.s) / one.s) - 1e-9 * at[-1]
+                far[(np.minimum(apart, at[-1] - apart) < least) | (apart == 0)] = np.inf
+            most = np.inf
+            for place in np.argsort(far, axis=None):
+                i, j = map(int, np.unravel_index(place, far.shape))
+                if far[i, j] > most or far[i, j] == np.inf:
+                    break
+                if c != d or one.counts(i, j):
+                    most = min(most, far[i, j] * (1 + 1e-12))
+                    found.append((_apart(one.vertices[i], other.vertices[j]) / 2, [[c, i], [d, j]]))
     return found
 
 
-def _root(value: Any) -> Decimal:
-    return Decimal(value).sqrt()
+def _apart(one: Any, other: Any) -> Decimal:
+    ends = zip(one.tolist(), other.tolist(), strict=True)
+    return sum(((Decimal(a) - Decimal(b)) ** 2 for a, b in ends), Decimal(0)).sqrt()
 
 
-def _arctan(u: Decimal) -> Decimal:
-    """To sixty digits nearly, by a quarter of the angle again and again."""
-    halvings = 12
-    for _ in range(halvings):
+def arctan(u: Decimal) -> Decimal:
+    """By halves of the angle, and the series."""
+    for _ in range(12):
         u = u / (1 + (1 + u * u).sqrt())
-    return sum((-1) ** k * u ** (2 * k + 1) / (2 * k + 1) for k in range(12)) * 2**halvings
-
-
-def last_digit(decimal: str, steps: int) -> str:
-    """A decimal some steps of its last digit up or down, its twentieth if it has fewer."""
-    value = Decimal(decimal)
-    place = value.adjusted() - 19
-    return str(value + Decimal(steps).scaleb(place)) if math.isfinite(value) else decimal
+    return 2**12 * sum(((-1) ** k * u ** (2 * k + 1) / (2 * k + 1) for k in range(12)), Decimal(0))

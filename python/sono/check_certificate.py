@@ -20,12 +20,11 @@ import sys
 from decimal import Decimal
 from fractions import Fraction
 from itertools import accumulate, pairwise
-from math import inf, isqrt
+from math import ceil, floor, inf, isqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
 Point = tuple[int, int, int]
-Row = tuple[float, ...]
 
 TEXTS = ("format", "program", "file", "sha256")
 DECIMALS = ("s", "min_rad", "r", "r_c", "length", "l_c")
@@ -65,7 +64,7 @@ def prove(fields: dict[str, Any], content: bytes) -> None:
     vertices, units = in_units(components)
     loops = list(map(loop_of, vertices))
     claimed = {key: Fraction(fields[key]) * units for key in DECIMALS}
-    four_r2 = above(*(4 * claimed["r"] ** 2).as_integer_ratio())
+    four_r2 = ceil(4 * claimed["r"] ** 2)
     prove_thickness(loops, four_r2, units)
     prove_figures(loops, claimed, units)
     check_decided_by(fields["decided_by"], loops, four_r2)
@@ -103,13 +102,13 @@ def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return found
 
 
-def rows_of(content: bytes) -> list[list[Row]]:
+def rows_of(content: bytes) -> list[list[tuple[float, ...]]]:
     """Read the vertices of each component, as the nearest binary64 numbers. Raises `RefusedError`.
 
     A blank line ends a component, whose last vertex may repeat the first; a # starts a comment, and a line
     that has nothing else ends nothing.
     """
-    blocks: list[list[Row]] = [[]]
+    blocks: list[list[tuple[float, ...]]] = [[]]
     for number, line in enumerate(content.splitlines(), 1):
         data, comment, _ = line.decode("latin-1").partition("#")
         cells = [cell.strip() for cell in data.split("," if "," in data else None)]
@@ -126,7 +125,7 @@ def rows_of(content: bytes) -> list[list[Row]]:
     return components
 
 
-def in_units(components: list[list[Row]]) -> tuple[list[list[Point]], int]:
+def in_units(components: list[list[tuple[float, ...]]]) -> tuple[list[list[Point]], int]:
     """Return the vertices as whole numbers of a unit, and how many units make 1."""
     ratios = [[[x.as_integer_ratio() for x in row] for row in rows] for rows in components]
     units = max(below for rows in ratios for row in rows for _, below in row)
@@ -141,11 +140,6 @@ def square(p: Point | list[int], q: Point | list[int]) -> int:
     return (p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 + (p[2] - q[2]) ** 2
 
 
-def above(over: int, below: int) -> int:
-    """Return the least whole number that is not below a fraction."""
-    return -(-over // below)
-
-
 def root_above(value: int) -> int:
     """Return the least whole number that is not below the root of another."""
     return isqrt(value - 1) + 1 if value else 0
@@ -157,11 +151,11 @@ def shown(value: Fraction) -> str:
 
 
 class Loop(NamedTuple):
-    """One component, in units: its vertices, and what the theorem needs of them.
+    """One component in units.
 
-    `along` are the arclengths to each vertex and all round, sums of edges rounded up; `longest` is S_c^2;
-    `bends` are 4 Rad_i^2 from below where the polygon turns; `length` is that of its part of K_P, from
-    above; pairs count whose arclength is `counts` or more, which is from below.
+    `along` are the arclengths to each vertex and all round, from above; `longest` is S_c^2; `bends` are
+    4 Rad_i^2 from below where the polygon turns; `length` is that of its part of K_P, from above; pairs count
+    from the arclength `counts` on, which is from below.
     """
 
     vertices: list[Point]
@@ -188,20 +182,20 @@ def loop_of(vertices: list[Point]) -> Loop:
             saved += isqrt(shorter) * saving(both, dot) >> BITS if dot > 0 else 0  # (C5)
         elif dot <= 0:  # back along the edge before, or from a vertex that comes twice
             bends[i] = 0
-    counts = int(PI * isqrt(min(bends.values())) / 2) - root_above(max(squares))  # (C6)
+    counts = floor(PI * isqrt(min(bends.values())) / 2) - root_above(max(squares))  # (C6)
     return Loop(vertices, along, max(squares), bends, along[-1] - saved, counts)
 
 
 def saving(both: int, dot: int) -> int:
     """Return 1 - atan(u)/u from below in fixed point, u = tan(theta/2), for |a||b| and a.b > 0 (C4)."""
     one = 1 << BITS
-    cosine = root_above(above((both + dot) << 2 * BITS, 2 * both))  # of theta/2, from above
+    cosine = root_above(-(-(both + dot << 2 * BITS) // (2 * both)))  # of theta/2, from above
     z = max(0, one - cosine) * one // (one + cosine)  # tan(theta/4)^2 from below
     total, power, k = 0, z, 1
     while power:
         total += power * 4 * k // (4 * k * k - 1)
         power, k = power * z >> BITS, k + 1  # z^k exceeds it by less than k
-        total -= above((power + k) * 4 * k, 4 * k * k - 1)
+        total -= -(-(power + k) * 4 * k // (4 * k * k - 1))  # rounded up
         power, k = power * z >> BITS, k + 1
     return max(0, total)
 
@@ -223,13 +217,12 @@ def prove_thickness(loops: list[Loop], four_r2: int, units: int) -> None:
     for c, loop in enumerate(loops):
         for d, other in enumerate(loops[c:], c):
             if pair := too_close(loop, other, four_r2):
-                i, j = pair
-                apart = square(loop.vertices[i], other.vertices[j])
+                i, j, apart = pair
                 fail(f"2 R <= |v_i - v_j| fails for {[c, i]} and {[d, j]} (T2)", apart)
 
 
-def too_close(one: Loop, other: Loop, four_r2: int) -> tuple[int, int] | None:
-    """Return vertices nearer than 2 R that may count, if there are any, by two arcs at a time (C7)."""
+def too_close(one: Loop, other: Loop, four_r2: int) -> tuple[int, int, int] | None:
+    """Return vertices that may count and are nearer than 2 R, and the square of that (C7)."""
     a, b, two_r = one.along, other.along, root_above(four_r2)
     todo = [(0, len(one.vertices), 0, len(other.vertices))]
     while todo:
@@ -243,7 +236,7 @@ def too_close(one: Loop, other: Loop, four_r2: int) -> tuple[int, int] | None:
             continue
         if i_end - i == j_end - j == 1:
             if apart < four_r2:
-                return i, j
+                return i, j, apart
         elif one is other and i == j:
             todo += [(i, p, i, p), (i, p, p, i_end), (p, i_end, p, i_end)]
         elif i_end - i >= j_end - j:
