@@ -16,7 +16,7 @@ from sono.invariants.diagrams import Gauss, as_crossings, gauss_code, shortened
 from sono.invariants.identify import fingerprint_of
 from sono.naming.identity import MOST_NAMES, names_of, polynomial_of
 from sono.naming.known import mirrored
-from sono.naming.primes import MOST_PROOF, Prime, pieces_of
+from sono.naming.primes import MOST_PROOF, Prime, mirror_of, pieces_of
 from sono.records import Record
 
 PROVEN: Literal["proven"] = "proven"
@@ -57,7 +57,7 @@ def verify(one: Components, other: Components) -> Verdict:
     here, there = (_Type.of(shortened(gauss_code(diagram(curve)))) for curve in (one, other))
     names = here.name, there.name
     as_is = here.relation(there)
-    image = as_is if as_is == PROVEN else here.relation(_Type.of(mirrored(there.gauss)))
+    image = as_is if as_is == PROVEN else here.relation(there.image())
     if PROVEN in (as_is, image):
         return Verdict("same" if as_is == PROVEN else "mirror images", PROVEN, None, *names)
     if as_is == UNDECIDED:
@@ -70,31 +70,33 @@ def verify(one: Components, other: Components) -> Verdict:
 
 @dataclass(frozen=True)
 class _Type:
-    """The type of a curve: a diagram, its parts, and invariants, None where they would take too long.
-
-    The invariants do not mind in which order components come, nor whether all are reversed.
-    """
+    """The type of a curve: a diagram, and the prime parts of each piece that is apart."""
 
     gauss: Gauss
     pieces: list[list[Prime]]
-    invariants: dict[str, object]
 
     @classmethod
     def of(cls, gauss: Gauss) -> Self:
         """Take a diagram apart."""
-        pieces = pieces_of(gauss)
-        linking, signatures, alexander = fingerprint_of(as_crossings(gauss))
-        return cls(
-            gauss,
-            pieces,
-            {
-                "components": len(gauss[0]),
-                "linking numbers": sorted(linking),
-                "signatures": signatures,
-                "Alexander polynomials": alexander,
-                "HOMFLY polynomials": polynomial_of(pieces),
-            },
-        )
+        return cls(gauss, pieces_of(gauss))
+
+    def image(self) -> "_Type":
+        """Return the mirror image."""
+        return _Type(mirrored(self.gauss), [list(map(mirror_of, piece)) for piece in self.pieces])
+
+    def invariants(self) -> dict[str, object]:
+        """Return invariants that mind neither the order of components nor whether all are reversed.
+
+        One that would take too long is None.
+        """
+        linking, signatures, alexander = fingerprint_of(as_crossings(self.gauss))
+        return {
+            "components": len(self.gauss[0]),
+            "linking numbers": sorted(linking),
+            "signatures": signatures,
+            "Alexander polynomials": alexander,
+            "HOMFLY polynomials": polynomial_of(self.pieces),
+        }
 
     @property
     def primes(self) -> list[Prime]:
@@ -123,20 +125,23 @@ class _Type:
 
     def relation(self, other: "_Type") -> str:
         """Tell how it is known that another type is the same; if it is not, in what they differ."""
-        for key, value in self.invariants.items():
-            if None not in (value, other.invariants[key]) and value != other.invariants[key]:
+        mine, theirs = self.invariants(), other.invariants()
+        for key, value in mine.items():
+            if None not in (value, theirs[key]) and value != theirs[key]:
                 return key
-        if self.is_in_table and other.is_in_table and not {*self.names} & {*other.names}:
-            return "names"
-        if any(
-            one.is_in_table and any(p.is_new for p in two.primes)
-            for one, two in ((self, other), (other, self))
-        ):
+        if self._is_named_unlike(other):
             return "names"
         if _is_one(self, other):
             return PROVEN
         several = any(prime.may_be or len(prime.names) > 1 for prime in self.primes + other.primes)
-        return UNDECIDED if several or None in self.invariants.values() else INVARIANTS
+        return UNDECIDED if several or None in (*mine.values(), *theirs.values()) else INVARIANTS
+
+    def _is_named_unlike(self, other: "_Type") -> bool:
+        """Tell whether the table has one of them, and other names, or none, for the other."""
+        if self.is_in_table and other.is_in_table:
+            return not {*self.names} & {*other.names}
+        named, less = (self, other) if self.is_in_table else (other, self)
+        return named.is_in_table and any(prime.is_new for prime in less.primes)
 
 
 def _is_one(here: _Type, there: _Type) -> bool:
