@@ -108,10 +108,10 @@ pub enum Error {
     },
     /// A bend so sharp that no bound is proven: the inscribed arc is too small beside the edges.
     #[error(
-        "no bound is proven: R > S/sqrt 2 fails by {:.3e}, as R is {r:.6e} by the bend at vertex {vertex} \
-         of component {component}, and the longest edge is S = {:.6e}; round this bend off or make the \
+        "no bound is proven: R > S/sqrt 2 fails by {:?}, as R is {:?} by the bend at vertex {vertex} \
+         of component {component}, and the longest edge is S = {:?}; round this bend off or make the \
          edges shorter, as `sono tighten` does",
-        needed - r, needed * SQRT_2
+        short(needed - r), short(*r), short(needed * SQRT_2)
     )]
     SharpBend {
         /// Component of the vertex.
@@ -125,10 +125,10 @@ pub enum Error {
     },
     /// Two vertices so close that no bound is proven: there is no room for a rope on edges so long.
     #[error(
-        "no bound is proven: R > S/sqrt 2 fails by {:.3e}, as R is {r:.6e}, half the distance of vertex \
+        "no bound is proven: R > S/sqrt 2 fails by {:?}, as R is {:?}, half the distance of vertex \
          {vertex} of component {component} from vertex {other_vertex} of component {other_component}, and \
-         the longest edge is S = {:.6e}; move them apart or make the edges shorter, as `sono tighten` does",
-        needed - r, needed * SQRT_2
+         the longest edge is S = {:?}; move them apart or make the edges shorter, as `sono tighten` does",
+        short(needed - r), short(*r), short(needed * SQRT_2)
     )]
     ClosePair {
         /// Component of the first vertex.
@@ -154,6 +154,11 @@ pub enum Error {
         /// What it may be.
         range: &'static str,
     },
+}
+
+/// A number as a message has it, to six digits.
+fn short(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 /// A [`std::result::Result`] with this crate's [`enum@Error`].
