@@ -1,19 +1,18 @@
 //! The certified bound: L_c = Length(K_P)/R_c, rounded up, for unequal edges and several components.
 //!
-//! In the words of the theorem (`docs/theorem.md`): s_i the edges, S_c the longest of component c, S the
-//! longest of all, t_i half the shorter edge at v_i, theta_i the turning angle there, and Rad_i =
-//! t_i/tan(theta_i/2), of which M_c is the least. R is the largest number with
+//! Names in brackets are those of `docs/theorem.md`: s_i the edges, S_c the longest of component c, S the
+//! longest of all, t_i half the shorter edge at v_i (D1), theta_i the turning angle there (D2), and
+//! Rad_i = t_i/tan(theta_i/2) (D3), of which M_c is the least. R is the largest number with
 //!
-//! 1. R^2 <= M_c^2 + S_c^2/4 for each component: from below;
-//! 2. |v_i - v_j| >= 2R for each pair that counts: the distances from below, over all pairs that may
-//!    count, arclengths from above being compared with pi M_c - S_c from below.
+//! - (T1) R^2 <= M_c^2 + S_c^2/4 for each component: both from below;
+//! - (T2) 2R <= |v_i - v_j| for each pair that counts: the distances from below, over all pairs that may
+//!   count (C7), arclengths from above being compared with pi M_c - S_c from below (C6).
 //!
-//! If it has 3. R > S/sqrt 2, S from above, then the knot or link has a representative of ropelength
-//! Length(K_P)/sqrt(R^2 - S^2/4) at most, the length from above and the root from below.
+//! If it has (T3) R > S/sqrt 2, S from above, then the knot or link has a representative of ropelength
+//! Length(K_P)/sqrt(R^2 - S^2/4) at most, the length from above and the root from below (T4, C8, C9).
 //!
 //! Only + - * / and roots are needed. With e and f the edges at v_i, u = tan(theta_i/2) is
-//! |e x f|/(|e||f| + e.f), which keeps its digits where a fine curve hardly turns. The arc has the
-//! length 2 t_i atan(u)/u, and by 1 and 3 every u is below 1.
+//! |e x f|/(|e||f| + e.f), which keeps its digits where a fine curve hardly turns (C3).
 
 use crate::certify::interval::Interval;
 use crate::certify::pairs::{self, Along, Pair};
@@ -29,7 +28,7 @@ pub struct Bound {
     pub longest_edge: f64,
     /// At most the least M_c, the radii of the inscribed arcs.
     pub min_rad: f64,
-    /// At most the largest R that has the theorem's first two conditions; it has all three.
+    /// At most the largest R that has (T1) and (T2); it has (T3) too.
     pub r: f64,
     /// At most R_c, the thickness of K_P.
     pub r_c: f64,
@@ -41,12 +40,12 @@ pub struct Bound {
     pub decided_by: Decider,
 }
 
-/// What R is held down by: the condition, and its vertices.
+/// What R is held down by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Decider {
-    /// The bend at this vertex, by the first condition.
+    /// The bend at this vertex, by (T1).
     Bend(usize),
-    /// The distance of these two, by the second.
+    /// The distance of these two, by (T2).
     Pair(usize, usize),
 }
 
@@ -63,7 +62,7 @@ pub enum Decider {
 /// ```
 ///
 /// # Errors
-/// [`Error::SharpBend`] and [`Error::ClosePair`] where the third condition fails, [`Error::SelfCrossing`]
+/// [`Error::SharpBend`] and [`Error::ClosePair`] where (T3) fails, [`Error::SelfCrossing`]
 /// where it fails for a curve that crosses itself.
 pub fn certify(curve: &Curve) -> Result<Bound> {
     let vertices: Vec<_> = curve.vertices().iter().map(|v| exactly(*v)).collect();
@@ -78,12 +77,13 @@ pub fn certify_boxes(curve: &Curve, vertices: &[Point]) -> Result<Bound> {
     let components: Vec<_> =
         curve.ranges().map(|range| Component::new(&vertices[range.clone()], range.start)).collect();
     let s = components.iter().map(|c| c.longest).reduce(Interval::max).ok_or(Error::Empty)?;
-    let (squared, decided_by) = r_squared(vertices, &components);
-    let r = Interval::from(squared).sqrt().low();
-    let condition = half(s.squared());
-    if Interval::from(r).squared().low() <= condition.high() {
-        check_embedded(curve)?;
-        return Err(refusal(curve, r, condition.sqrt().high(), decided_by));
+    let (mut squared, mut decided_by) = sharpest_bend(&components);
+    let mut r = proven(curve, s, squared, decided_by)?;
+    // The distances are compared with 2R: all times 4, exactly.
+    let closer = pairs::closest(vertices, &along(&components), 4. * squared);
+    if let Some(Pair { squared: apart, i, j }) = closer {
+        (squared, decided_by) = (0.25 * apart, Decider::Pair(i, j));
+        r = proven(curve, s, squared, decided_by)?;
     }
     let r_c = (Interval::from(r).squared() - half(half(s.squared()))).sqrt().low();
     let pieces: Vec<_> = components.iter().flat_map(Component::inscribed).collect();
@@ -139,7 +139,7 @@ impl Component {
         Self { edges, bends, longest, min_rad, sharpest }
     }
 
-    /// For each vertex the edge after it, less what the arc is shorter than its two tangents: in all
+    /// (C5) For each vertex the edge after it, less what the arc is shorter than its two tangents: in all
     /// the length of the inscribed component.
     fn inscribed(&self) -> impl Iterator<Item = Interval> + '_ {
         let one = Interval::from(1.);
@@ -155,25 +155,29 @@ impl Component {
     }
 }
 
-/// At most the square of the largest R with the first two conditions, and what decides it.
-fn r_squared(vertices: &[Point], components: &[Component]) -> (f64, Decider) {
-    let (mut squared, mut decided_by) = (f64::INFINITY, Decider::Bend(0));
-    for c in components {
-        let bend = (c.radius().squared() + half(half(c.longest.squared()))).low();
-        if bend < squared {
-            (squared, decided_by) = (bend, Decider::Bend(c.sharpest));
-        }
-    }
-    // The distances are compared with 2R: all times 4, exactly.
-    if let Some(Pair { squared: apart, i, j }) =
-        pairs::closest(vertices, &along(components), 4. * squared)
-    {
-        (squared, decided_by) = (0.25 * apart, Decider::Pair(i, j));
-    }
-    (squared, decided_by)
+/// At most the square of the largest R with (T1), and the bend that decides it.
+fn sharpest_bend(components: &[Component]) -> (f64, Decider) {
+    let bend = |c: &Component| {
+        let squared = (c.radius().squared() + half(half(c.longest.squared()))).low();
+        (squared, Decider::Bend(c.sharpest))
+    };
+    let sharper =
+        |one: (f64, Decider), other: (f64, Decider)| if other.0 < one.0 { other } else { one };
+    components.iter().map(bend).fold((f64::INFINITY, Decider::Bend(0)), sharper)
 }
 
-/// Which pairs count.
+/// R, from below, of which no more than the square is allowed, if it has (T3).
+fn proven(curve: &Curve, s: Interval, squared: f64, decided_by: Decider) -> Result<f64> {
+    let r = Interval::from(squared).sqrt().low();
+    let needed = half(s.squared());
+    if Interval::from(r).squared().low() > needed.high() {
+        return Ok(r);
+    }
+    check_embedded(curve)?;
+    Err(refusal(curve, r, needed.sqrt().high(), decided_by))
+}
+
+/// Which pairs count (C1, C6).
 fn along(components: &[Component]) -> Along {
     let mut along = Along { component: vec![], arclength: vec![], around: vec![], least: vec![] };
     for (c, component) in components.iter().enumerate() {
@@ -189,7 +193,7 @@ fn along(components: &[Component]) -> Along {
     along
 }
 
-/// atan(u)/u for u from 0 to 1, by the series 1 - u^2/3 + u^4/5 - ...
+/// (C4) atan(u)/u by the series 1 - u^2/3 + u^4/5 - ... for u from 0 to 1, which (P2) says it is.
 ///
 /// Its tail from the term 1/m on is the integral of y^(m-1)/(1 + u^2 y^2) for y from 0 to 1, which is
 /// between 0 and 1/m. With w = u/(1 + sqrt(1 + u^2)) atan(u) is 2 atan(w), of which the series needs fewer
@@ -223,7 +227,7 @@ fn half(x: Interval) -> Interval {
     Interval::new(0.5 * x.low(), 0.5 * x.high())
 }
 
-/// The third condition fails: R is at most `needed`.
+/// (T3) fails: R is at most `needed`.
 fn refusal(curve: &Curve, r: f64, needed: f64, decided_by: Decider) -> Error {
     let place = |i: usize| {
         let component = curve.component_of(i);

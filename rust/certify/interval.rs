@@ -124,12 +124,13 @@ impl Mul for Interval {
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        extremes([
+        let (low, high) = extremes([
             self.low * other.low,
             self.low * other.high,
             self.high * other.low,
             self.high * other.high,
-        ])
+        ]);
+        Self::outward(low, high)
     }
 }
 
@@ -142,18 +143,19 @@ impl Div for Interval {
         if other.low <= 0. && other.high >= 0. {
             return Self::new(f64::NEG_INFINITY, f64::INFINITY);
         }
-        extremes([
+        let (low, high) = extremes([
             self.low / other.low,
             self.low / other.high,
             self.high / other.low,
             self.high / other.high,
-        ])
+        ]);
+        Self::outward(low, high)
     }
 }
 
-/// From the least to the largest of four, outward. NaN is 0 times infinity or a quotient of infinities,
-/// which stand for unbounded numbers: the other ends, one of which is finite, have all that these reach.
+/// The least and the largest of four. NaN is 0 times infinity or a quotient of infinities, which stand
+/// for unbounded numbers: the others, one of which is finite, reach all that these do.
 #[inline]
-fn extremes([a, b, c, d]: [f64; 4]) -> Interval {
-    Interval::outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
+fn extremes([a, b, c, d]: [f64; 4]) -> (f64, f64) {
+    (a.min(b).min(c).min(d), a.max(b).max(c).max(d))
 }

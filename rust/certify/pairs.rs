@@ -1,4 +1,4 @@
-//! The closest pair of vertices that counts: condition 2 of the theorem, from below.
+//! The closest pair of vertices that counts, for (T2) of the theorem; its distance from below.
 //!
 //! The vertices are halved, by their order, down to single ones, and each part has a box round it. A
 //! pair of parts is left as soon as no pair of their vertices counts, or all of them are farther apart
