@@ -82,6 +82,7 @@ fn check_two(a: Interval, b: Interval, x: f64, y: f64) -> Result<(), TestCaseErr
     prop_assert!(has(a + b, &(&whole_x + &whole_y), &one), "{a:?} + {b:?}");
     prop_assert!(has(a - b, &(&whole_x - &whole_y), &one), "{a:?} - {b:?}");
     prop_assert!(has(a * b, &(&whole_x * &whole_y), &unit), "{a:?} * {b:?}");
+    prop_assert!(!a.is_above(b) || x > y);
     prop_assert!(has(a.min(b), &(&whole_x).min(&whole_y).clone(), &one));
     prop_assert!(has(a.max(b), &(&whole_x).max(&whole_y).clone(), &one));
     if y != 0. {
@@ -148,12 +149,30 @@ fn pi_is_between_doubles() {
 }
 
 #[test]
-fn what_may_divide_by_zero_may_be_anything() {
-    let whole_line = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
-    for divisor in [(0., 0.), (0., 1.), (-1., 0.), (-1., 1.)] {
-        assert_eq!(Interval::from(1.) / Interval::new(divisor.0, divisor.1), whole_line);
+fn what_may_divide_by_zero_has_no_bound() {
+    let nothing_known = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
+    let (one, zero) = (Interval::from(1.), Interval::from(0.));
+    assert_eq!(one / zero, nothing_known);
+    assert_eq!(one / Interval::from(-0.), nothing_known);
+    assert_eq!(one / Interval::new(-1., 1.), nothing_known);
+    for end in [0., -0.] {
+        let half_line = one / Interval::new(end, 2.);
+        assert!(is_near(half_line.low(), 0.5) && half_line.high() == f64::INFINITY);
+        let half_line = one / Interval::new(-2., end);
+        assert!(is_near(half_line.high(), -0.5) && half_line.low() == f64::NEG_INFINITY);
     }
+    assert_eq!(zero * nothing_known, nothing_known);
     let unbounded = Interval::new(1., f64::INFINITY);
-    assert_eq!(Interval::from(0.) * whole_line, whole_line);
     assert!((unbounded / unbounded).contains(1e300) && (unbounded / unbounded).contains(1e-300));
+}
+
+fn is_near(x: f64, y: f64) -> bool {
+    (x - y).abs() < 1e-15
+}
+
+#[test]
+fn above_is_above_for_all() {
+    let (low, high) = (Interval::new(0., 1.), Interval::new(1., 2.));
+    assert!(!high.is_above(low) && !low.is_above(high) && !high.is_above(high));
+    assert!(Interval::new(1.5, 2.).is_above(low) && !Interval::new(0.5, 2.).is_above(low));
 }

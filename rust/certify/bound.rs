@@ -124,17 +124,17 @@ impl Component {
                 let before = (i + n - 1) % n;
                 let (e, f) = (along[before], along[i]);
                 let tan = length(cross(e, f)) / (edges[before] * edges[i] + dot(e, f));
-                (half(edges[before].min(edges[i])), tan)
+                (half(edges[before].min(edges[i])), tan.max(Interval::from(0.)))
             })
             .collect();
         let (mut min_rad, mut sharpest) = (f64::INFINITY, first);
         for (i, (t, tan)) in bends.iter().enumerate() {
-            // From below; 0 where the edges may fold back, and the tangent has no bound.
-            let rad = (Interval::from(t.low()) / Interval::from(tan.high())).low().max(0.);
+            let rad = (*t / *tan).low(); // infinite where the polygon goes straight on
             if rad < min_rad {
                 (min_rad, sharpest) = (rad, first + i);
             }
         }
+        let min_rad = min_rad.max(0.); // where the edges may fold back, so that tan has no bound
         let longest = edges.iter().copied().fold(Interval::from(0.), Interval::max);
         Self { edges, bends, longest, min_rad, sharpest }
     }
@@ -170,7 +170,7 @@ fn sharpest_bend(components: &[Component]) -> (f64, Decider) {
 fn proven(curve: &Curve, s: Interval, squared: f64, decided_by: Decider) -> Result<f64> {
     let r = Interval::from(squared).sqrt().low();
     let needed = half(s.squared());
-    if Interval::from(r).squared().low() > needed.high() {
+    if Interval::from(r).squared().is_above(needed) {
         return Ok(r);
     }
     check_embedded(curve)?;

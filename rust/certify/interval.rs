@@ -65,6 +65,12 @@ impl Interval {
         self.low <= x && x <= self.high
     }
 
+    /// Whether this number is above the other one, whatever they are.
+    #[inline]
+    pub fn is_above(self, other: Self) -> bool {
+        self.low > other.high
+    }
+
     /// The smaller of two numbers.
     #[inline]
     pub fn min(self, other: Self) -> Self {
@@ -137,18 +143,17 @@ impl Mul for Interval {
 impl Div for Interval {
     type Output = Self;
 
-    /// Where the divisor may be 0, the quotient may be anything.
+    /// The quotient; there is no bound on it where numbers near 0 divide.
     #[inline]
     fn div(self, other: Self) -> Self {
-        if other.low <= 0. && other.high >= 0. {
+        if other.contains(0.) && (other.low < 0.) == (other.high > 0.) {
             return Self::new(f64::NEG_INFINITY, f64::INFINITY);
         }
-        let (low, high) = extremes([
-            self.low / other.low,
-            self.low / other.high,
-            self.high / other.low,
-            self.high / other.high,
-        ]);
+        // An end that is 0 gets the sign of what is next to it, and so do the quotients.
+        let start = if other.low == 0. { 0. } else { other.low };
+        let end = if other.high == 0. { -0. } else { other.high };
+        let (low, high) =
+            extremes([self.low / start, self.low / end, self.high / start, self.high / end]);
         Self::outward(low, high)
     }
 }

@@ -135,7 +135,7 @@ impl Search<'_> {
             (Some(c), Some(d)) if c == d => {
                 let forth = b.arclength - a.arclength;
                 let back = self.along.around[c] - forth;
-                forth.min(back).high() >= self.along.least[c].low()
+                !self.along.least[c].is_above(forth.min(back))
             }
             _ => true,
         }
