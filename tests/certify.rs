@@ -140,7 +140,7 @@ fn three_vertices_and_straight_angles_are_no_trouble() {
 }
 
 #[test]
-fn r_is_no_more_than_half_of_the_least_distance() {
+fn each_figure_follows_from_those_before() {
     for k in 0..200 {
         let curve = scaled(&hopf(60), 1. + 0.01 * f64::from(k));
         let vertices: Vec<_> = curve.vertices().iter().map(|v| exactly(*v)).collect();
@@ -151,9 +151,14 @@ fn r_is_no_more_than_half_of_the_least_distance() {
             least: vec![Interval::from(1.); 2],
         };
         let pair = closest(&vertices, &along, f64::INFINITY).unwrap();
-        // No root of a quarter is above, by the very steps that it would be above it.
-        let r = certify(&curve).unwrap().r;
-        assert!(Interval::from(r).squared().low() < 0.25 * pair.squared.next_down());
+        let Bound { longest_edge, r, r_c, inscribed_length, l_c, .. } = certify(&curve).unwrap();
+        let squared = |x| Interval::from(x).squared();
+        // What was rounded up in place of down would be beyond these, which are rounded twice.
+        assert!(squared(r).low() < 0.25 * pair.squared.next_down());
+        let r_c_squared = squared(r) - Interval::from(0.25) * squared(longest_edge);
+        assert!(squared(r_c).low() < r_c_squared.low());
+        // Fused, so that the sign is that of what is exact.
+        assert!(l_c.mul_add(r_c, -inscribed_length) > 0.);
     }
 }
 
@@ -191,6 +196,10 @@ proptest! {
             prop_assert!(bound.r_c < single.r_c);
             prop_assert!(bound.inscribed_length > single.inscribed_length);
             prop_assert!(bound.l_c > single.l_c);
+            if let Decider::Bend(_) = bound.decided_by {
+                let squares = bound.min_rad.powi(2) + 0.25 * single.longest_edge.powi(2);
+                prop_assert!(bound.r.powi(2) < squares);
+            }
         }
     }
 

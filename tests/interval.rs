@@ -99,6 +99,7 @@ fn check_one(a: Interval, x: f64) -> Result<(), TestCaseError> {
     prop_assert!(a.contains(x));
     prop_assert!(has(a.squared(), &whole(x).pow(2), &unit), "{a:?} squared");
     prop_assert!(a.squared().low() >= 0.);
+    prop_assert!(a.abs().contains(x.abs()) && a.abs().low() >= 0.);
     prop_assert!(x < 0. || has_root(a.sqrt(), x), "root of {a:?}");
     Ok(())
 }

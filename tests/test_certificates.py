@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import sono as package
-from sono import certificates, formats
+from sono import _core, certificates, formats
 
 Curve = Sequence[NDArray[np.float64]]
 
@@ -52,6 +52,17 @@ def check_exactly(curve: Curve, certificate: package.Certificate) -> None:
         assert 4 * r**2 <= apart < 4 * r**2 * (1 + Fraction(1, 10**12))
 
 
+def check_each(curve: Curve, certificate: package.Certificate) -> None:
+    """Check that no decimal is on the wrong side of its double, or far from it."""
+    bound: Any = _core.certify(curve)
+    up = [(certificate.s, "longest_edge"), (certificate.length, "inscribed_length"), (certificate.l_c, "l_c")]
+    down = [(certificate.min_rad, "min_rad"), (certificate.r, "r"), (certificate.r_c, "r_c")]
+    for decimal, double in ((Fraction(decimal), Fraction(bound[key])) for decimal, key in up):
+        assert double <= decimal <= double * (1 + Fraction(1, 10**19))
+    for decimal, double in ((Fraction(decimal), Fraction(bound[key])) for decimal, key in down):
+        assert double * (1 - Fraction(1, 10**19)) <= decimal <= double
+
+
 @settings(deadline=None, max_examples=40)
 @given(
     n=st.integers(30, 90),
@@ -64,6 +75,7 @@ def test_decimals_are_rounded_outward(n: int, scale: float, shift: float, stretc
     curve = [scale * ring for ring in rings]
     certificate = package.certify(curve)
     check_exactly(curve, certificate)
+    check_each(curve, certificate)
     measures = package.measure(curve)
     assert float(certificate.l_c) == pytest.approx(measures.l_c, rel=1e-11)
     assert all(

@@ -107,7 +107,7 @@ def certify(vertices: Rope) -> Certificate:
 
     >>> import sono
     >>> sono.certify(sono.tighten("3_1", 240)).rounded(6)
-    '32.7929'
+    '32.7919'
     """
     if isinstance(vertices, str):
         vertices = start(vertices, known=True)

@@ -89,13 +89,17 @@ impl Interval {
         Self::new(self.low.min(other.low), self.high.max(other.high))
     }
 
+    /// The distance from 0, exactly.
+    #[inline]
+    pub fn abs(self) -> Self {
+        Self::new(self.low.max(-self.high).max(0.), self.high.max(-self.low))
+    }
+
     /// The square, which is never negative.
     #[inline]
     pub fn squared(self) -> Self {
-        // The distances of the nearest and of the farthest number from 0.
-        let near = self.low.max(-self.high).max(0.);
-        let far = self.high.max(-self.low);
-        let square = Self::outward(near * near, far * far);
+        let Self { low, high } = self.abs();
+        let square = Self::outward(low * low, high * high);
         Self::new(square.low.max(0.), square.high)
     }
 

@@ -1,13 +1,23 @@
-//! The closest pair of vertices that counts, for (T2) of the theorem; its distance from below.
+//! The closest pair of vertices that counts, for (T2) of the theorem; its distance from below (C7).
 //!
-//! The vertices are halved, by their order, down to single ones, and each part has a box round it. A
-//! pair of parts is left as soon as no pair of their vertices counts, or all of them are farther apart
-//! than a pair that has been met: both is told by the boxes, and by the arclengths as intervals. So no
-//! pair is missed, whatever is rounded, and single vertices need no rule of their own: a vertex is a box.
-//! Of n vertices along a rope some n^1.5 pairs of parts are looked at, with a factor far below 1.
+//! The vertices are halved, by their order, down to single ones. A part of them is held by a straight
+//! piece, from its first vertex to its last, and a radius: none is farther from that piece. Pairs of
+//! parts are left where no pair of their vertices counts, which arclengths from above tell, or where
+//! all are farther apart than a pair that has been met: for any vector n, with the centres d apart and
+//! half axes g and h, vertices are apart in the direction of n by at least
+//!
+//! ```text
+//!   (d.n - |g.n| - |h.n|)/|n| - both radii.
+//! ```
+//!
+//! All this is computed in intervals, so no pair is missed. With n = d, strands that touch have axes
+//! across n, and what they bend goes with the square of their length: at each halving the pairs that
+//! are left are about as many as the parts.
+
+use glam::DVec3;
 
 use crate::certify::interval::Interval;
-use crate::certify::point::{Point, from_to, hull, squared};
+use crate::certify::point::{Point, dot, exactly, from_to, length, middle, shifted, squared};
 
 /// What tells which pairs count.
 pub struct Along {
@@ -34,9 +44,9 @@ pub struct Pair {
 
 /// The closest pair that counts or may count; `None` where all are at least `reach`, squared, apart.
 pub fn closest(vertices: &[Point], along: &Along, reach: f64) -> Option<Pair> {
-    let mut search =
-        Search { along, parts: Vec::with_capacity(2 * vertices.len()), reach, pair: None };
-    let all = search.part(vertices, 0, vertices.len());
+    let parts = Vec::with_capacity(2 * vertices.len());
+    let mut search = Search { vertices, along, parts, reach, pair: None };
+    let all = search.part(0, vertices.len());
     search.compare(all, all, 0.);
     search.pair
 }
@@ -44,8 +54,12 @@ pub fn closest(vertices: &[Point], along: &Along, reach: f64) -> Option<Pair> {
 /// Vertices one after the other.
 struct Part {
     first: usize,
-    /// The box round them.
-    space: Point,
+    /// Between the first and the last vertex.
+    centre: DVec3,
+    /// From there to the last one.
+    axis: DVec3,
+    /// At least how far a vertex is from the straight piece between the two.
+    radius: Interval,
     /// Their component, if it is one.
     component: Option<usize>,
     /// Where they lie along it.
@@ -54,7 +68,30 @@ struct Part {
     halves: Option<[usize; 2]>,
 }
 
+impl Part {
+    /// At most how far its straight piece gets from its centre in the direction of `n`, times |n|.
+    fn extent(&self, n: Point) -> Interval {
+        dot(exactly(self.axis), n).abs()
+    }
+
+    /// At least how far a vertex is from the straight piece of `other`, of which this is a half.
+    ///
+    /// The distance from a convex set is convex, so along a straight piece it is largest at an end.
+    fn radius_about(&self, other_centre: DVec3, other_axis: DVec3) -> Interval {
+        let from_end = |side: f64| {
+            let end = shifted(self.centre, side, self.axis);
+            // Any place on the piece will do, and this is about the nearest.
+            let place = (self.centre + side * self.axis - other_centre).dot(other_axis);
+            let place = (place / other_axis.length_squared()).clamp(-1., 1.);
+            let place = if place.is_nan() { 0. } else { place };
+            length(from_to(shifted(other_centre, place, other_axis), end))
+        };
+        from_end(-1.).max(from_end(1.)) + self.radius
+    }
+}
+
 struct Search<'a> {
+    vertices: &'a [Point],
     along: &'a Along,
     parts: Vec<Part>,
     reach: f64,
@@ -63,38 +100,48 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Makes the part of the vertices `first..end` and returns its index.
-    fn part(&mut self, vertices: &[Point], first: usize, end: usize) -> usize {
-        let part = if end - first == 1 {
-            Part {
-                first,
-                space: vertices[first],
-                component: Some(self.along.component[first]),
-                arclength: self.along.arclength[first],
-                halves: None,
-            }
-        } else {
-            let middle = first.midpoint(end);
-            let halves = [self.part(vertices, first, middle), self.part(vertices, middle, end)];
-            let [a, b] = halves.map(|half| &self.parts[half]);
-            Part {
-                first,
-                space: hull(a.space, b.space),
-                component: a.component.filter(|_| a.component == b.component),
-                arclength: a.arclength.hull(b.arclength),
-                halves: Some(halves),
-            }
-        };
+    fn part(&mut self, first: usize, end: usize) -> usize {
+        let part = if end - first == 1 { self.single(first) } else { self.several(first, end) };
         self.parts.push(part);
         self.parts.len() - 1
     }
 
+    fn single(&self, i: usize) -> Part {
+        let centre = middle(self.vertices[i]);
+        Part {
+            first: i,
+            centre,
+            axis: DVec3::ZERO,
+            radius: length(from_to(exactly(centre), self.vertices[i])),
+            component: Some(self.along.component[i]),
+            arclength: self.along.arclength[i],
+            halves: None,
+        }
+    }
+
+    fn several(&mut self, first: usize, end: usize) -> Part {
+        let cut = first.midpoint(end);
+        let halves = [self.part(first, cut), self.part(cut, end)];
+        let [a, b] = halves.map(|half| &self.parts[half]);
+        let (from, to) = (middle(self.vertices[first]), middle(self.vertices[end - 1]));
+        let (centre, axis) = (0.5 * (from + to), 0.5 * (to - from));
+        Part {
+            first,
+            centre,
+            axis,
+            radius: a.radius_about(centre, axis).max(b.radius_about(centre, axis)),
+            component: a.component.filter(|_| a.component == b.component),
+            arclength: a.arclength.hull(b.arclength),
+            halves: Some(halves),
+        }
+    }
+
     /// Looks through the pairs of two parts, `a` not after `b`, which are at least `apart`, squared.
     fn compare(&mut self, a: usize, b: usize, apart: f64) {
-        let single = self.parts[a].halves.is_none() && self.parts[b].halves.is_none();
-        if apart >= self.reach || (single && a == b) {
+        if apart >= self.reach || (a == b && self.parts[a].halves.is_none()) {
             return;
         }
-        if single {
+        if self.are_single(a, b) {
             let (i, j) = (self.parts[a].first, self.parts[b].first);
             self.reach = apart;
             self.pair = Some(Pair { squared: apart, i, j });
@@ -103,9 +150,8 @@ impl Search<'_> {
         let (mut pairs, mut n) = ([(f64::INFINITY, 0, 0); 4], 0);
         for x in self.halves(a) {
             for y in self.halves(b).filter(|&y| a != b || x <= y) {
-                let apart = self.apart(x, y);
-                if apart < self.reach && self.may_count(x, y) {
-                    pairs[n] = (apart, x, y);
+                if self.may_count(x, y) {
+                    pairs[n] = (self.apart(x, y), x, y);
                     n += 1;
                 }
             }
@@ -123,9 +169,21 @@ impl Search<'_> {
         halves.into_iter().flatten().chain(halves.is_none().then_some(part))
     }
 
+    fn are_single(&self, a: usize, b: usize) -> bool {
+        self.parts[a].halves.is_none() && self.parts[b].halves.is_none()
+    }
+
     /// At most the distance of any two vertices of the parts, squared.
     fn apart(&self, a: usize, b: usize) -> f64 {
-        squared(from_to(self.parts[a].space, self.parts[b].space)).low()
+        let single = self.are_single(a, b);
+        let (a, b) = (&self.parts[a], &self.parts[b]);
+        if single {
+            return squared(from_to(self.vertices[a.first], self.vertices[b.first])).low();
+        }
+        let n = exactly(b.centre - a.centre);
+        let between = from_to(exactly(a.centre), exactly(b.centre));
+        let gap = (dot(between, n) - a.extent(n) - b.extent(n)) / length(n) - (a.radius + b.radius);
+        gap.max(Interval::from(0.)).squared().low()
     }
 
     /// Whether a pair of vertices of the parts may count, `a` not after `b`.

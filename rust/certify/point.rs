@@ -18,9 +18,15 @@ pub fn from_to(a: Point, b: Point) -> Point {
     std::array::from_fn(|k| b[k] - a[k])
 }
 
-/// The box round two boxes.
-pub fn hull(a: Point, b: Point) -> Point {
-    std::array::from_fn(|k| a[k].hull(b[k]))
+/// A point in the middle of a box, or about there.
+pub fn middle(a: Point) -> DVec3 {
+    DVec3::from(a.map(|x| 0.5 * (x.low() + x.high())))
+}
+
+/// The point v + times w.
+pub fn shifted(v: DVec3, times: f64, w: DVec3) -> Point {
+    let (v, w) = (exactly(v), exactly(w));
+    std::array::from_fn(|k| v[k] + Interval::from(times) * w[k])
 }
 
 /// The scalar product.
