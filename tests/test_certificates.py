@@ -245,3 +245,63 @@ def test_what_is_wrong_is_told_with_its_lines(folder: Path, sono: Sono) -> None:
 def test_wrong_options(sono: Sono, arguments: list[str]) -> None:
     result = sono("certify", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
+
+
+CHECKER = "sono.check_certificate"
+
+
+def test_a_certificate_is_checked(folder: Path, sono: Sono) -> None:
+    pytest.importorskip(CHECKER)
+    assert sono("certify", "8_18", "Hopf.txt", "-o", "proofs").exit_code == 0
+    rope, proof = "proofs/8_18.txt", Path("proofs/8_18.certificate.json")
+    result = sono("certify", "--check", str(proof), rope)
+    bound = json.loads(proof.read_text())["l_c"]
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout == f"{rope}: proven: the ropelength of its type is at most {bound}\n"
+    for certificate, file in ((str(proof), "Hopf.txt"), ("Hopf.txt", "Hopf.txt")):
+        refused = sono("certify", "--check", certificate, file)
+        assert (refused.exit_code, refused.stdout) == (1, "")
+        assert refused.stderr.startswith(f"sono: {certificate}: proves nothing of {file}: ")
+    missing = sono("certify", "--check", "missing.json", rope)
+    assert missing.exit_code == 1
+    assert missing.stderr.startswith("sono: missing.json: cannot be read: ")
+
+
+@pytest.mark.slow
+@settings(deadline=None, max_examples=60)
+@given(
+    shape=st.sampled_from([(2, 3), (2, 5), (1, 0), (3, 4)]),
+    n=st.integers(70, 160),
+    scale=st.sampled_from([1.0, 1e-20, 1e20, 3.7]),
+    uneven=st.floats(0, 0.4),
+    wobble=st.floats(0, 0.003),
+    linked=st.booleans(),
+    seed=st.integers(0, 2**32),
+)
+def test_what_is_certified_is_checked(
+    tmp_path_factory: pytest.TempPathFactory,
+    shape: tuple[int, int],
+    n: int,
+    scale: float,
+    uneven: float,
+    wobble: float,
+    linked: bool,
+    seed: int,
+) -> None:
+    checker = pytest.importorskip(CHECKER)
+    t = 2 * np.pi * np.arange(n) / n
+    t += uneven * np.sin(t)
+    (p, q), random = shape, np.random.default_rng(seed)
+    away = 2 + 0.8 * np.cos(q * t)
+    knot = np.column_stack([away * np.cos(p * t), away * np.sin(p * t), 0.8 * np.sin(q * t)])
+    rings = [knot, 3 * circle(n // 2)[:, [0, 2, 1]] + [2.5, 0, 0]] if linked else [knot]
+    curve = [scale * (ring + wobble * random.normal(size=ring.shape)) for ring in rings]
+    path = tmp_path_factory.mktemp("proofs") / "knot.txt"
+    try:
+        certificate = package.certify(curve)
+    except package.CurveError:
+        return
+    package.write(path, curve)
+    proof = path.with_suffix(".json")
+    proof.write_text(json.dumps(certificate.document(path)))
+    assert checker.check(proof, path)["l_c"] == str(certificate.l_c)

@@ -82,14 +82,15 @@ def command(
 def _checked(certificate: str, file: str) -> int:
     """Have a certificate checked by what knows nothing of its making; return the exit code."""
     try:
-        import_module("sono.check_certificate").check(certificate, file)
-        with open(certificate, encoding="utf-8") as stream:
-            bound = json.load(stream)["l_c"]
-    except (ValueError, OSError) as error:
+        bound = import_module("sono.check_certificate").check(certificate, file)["l_c"]
+    except OSError as error:
+        options.complain(f"{error.filename}: cannot be read: {error.strerror}")
+    except ValueError as error:
         options.complain(f"{certificate}: proves nothing of {file}: {error}")
-        return 1
-    click.echo(f"{file}: proven: the ropelength of its type is at most {bound}")
-    return 0
+    else:
+        click.echo(f"{file}: proven: the ropelength of its type is at most {bound}")
+        return 0
+    return 1
 
 
 def _proven(source: "Source") -> "tuple[VertexFile, Certificate]":
