@@ -1,5 +1,6 @@
 //! What can be wrong with the input. Not converging is a [`crate::Status`], never an error.
 
+use std::f64::consts::SQRT_2;
 use std::ops::RangeInclusive;
 
 use thiserror::Error;
@@ -105,6 +106,44 @@ pub enum Error {
         /// One that will do.
         needed: usize,
     },
+    /// A bend so sharp that no bound is proven: the inscribed arc is too small beside the edges.
+    #[error(
+        "no bound is proven: R > S/sqrt 2 fails by {:?}, as R is {:?} by the bend at vertex {vertex} \
+         of component {component}, and the longest edge is S = {:?}; round this bend off or make the \
+         edges shorter, as `sono tighten` does",
+        short(needed - r), short(*r), short(needed * SQRT_2)
+    )]
+    SharpBend {
+        /// Component of the vertex.
+        component: usize,
+        /// The vertex.
+        vertex: usize,
+        /// The radius R that it allows.
+        r: f64,
+        /// What R must be above.
+        needed: f64,
+    },
+    /// Two vertices so close that no bound is proven: there is no room for a rope on edges so long.
+    #[error(
+        "no bound is proven: R > S/sqrt 2 fails by {:?}, as R is {:?}, half the distance of vertex \
+         {vertex} of component {component} from vertex {other_vertex} of component {other_component}, and \
+         the longest edge is S = {:?}; move them apart or make the edges shorter, as `sono tighten` does",
+        short(needed - r), short(*r), short(needed * SQRT_2)
+    )]
+    ClosePair {
+        /// Component of the first vertex.
+        component: usize,
+        /// The first vertex.
+        vertex: usize,
+        /// Component of the second vertex.
+        other_component: usize,
+        /// The second vertex.
+        other_vertex: usize,
+        /// Half their distance, R.
+        r: f64,
+        /// What R must be above.
+        needed: f64,
+    },
     /// A setting lies outside its range.
     #[error("setting {name} = {value} is out of range: {range}")]
     Setting {
@@ -115,6 +154,11 @@ pub enum Error {
         /// What it may be.
         range: &'static str,
     },
+}
+
+/// A number as a message has it, to six digits.
+fn short(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 /// A [`std::result::Result`] with this crate's [`enum@Error`].

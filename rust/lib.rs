@@ -3,11 +3,12 @@
 //! **Curve -> measures** is one road, **curve -> loose curve -> rope -> sweeps of SONO -> Newton steps of
 //! the polish -> tight curve** the other. The radius of a rope is R = 1, and ropelength is length over
 //! radius. Dependencies point one way only:
-//! `error <- geometry <- measures, invariants, beads, outcome <- resample, loosening <- sono, polish <- python`.
+//! `error <- geometry <- measures, certify, invariants, beads, outcome <- resample, loosening <- sono, polish <- python`.
 //! `sono` and `polish` do not know each other; only `python` knows of Python. `diagrams` of knots know of
 //! no curves.
 
 pub mod beads;
+pub mod certify;
 pub mod diagrams;
 pub mod error;
 pub mod geometry;
@@ -21,6 +22,7 @@ mod python;
 pub mod resample;
 pub mod sono;
 
+pub use certify::bound::{Bound, certify};
 pub use error::{Error, Result};
 pub use geometry::curve::Curve;
 pub use geometry::embedded::check_embedded;

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from sono.calls import tighten as tighten
     from sono.calls import verify as verify
     from sono.calls import write as write
+    from sono.certificates import Certificate as Certificate
+    from sono.certificates import certify as certify
     from sono.comparison import Comparison as Comparison
     from sono.comparison import compare as compare
     from sono.curve import Curve as Curve
@@ -60,6 +62,8 @@ _HOMES = {
     "Stopped": "sono.tightening",
     "Tight": "sono.tightening",
     "Minimum": "sono.searching",
+    "Certificate": "sono.certificates",
+    "certify": "sono.certificates",
     "Comparison": "sono.comparison",
     "compare": "sono.comparison",
     "forces": "sono.calls",

@@ -19,6 +19,7 @@ __all__ = [
     "Polish",
     "Tightener",
     "balance",
+    "certify",
     "crossings",
     "default_polish_settings",
     "default_settings",
@@ -52,6 +53,26 @@ force each pair presses (k,), and the largest coordinate of what is left over on
 
 _Measures: TypeAlias = dict[str, Any]
 """What a curve measures, in its own unit: the fields of `sono.curve.Measures`, which says what they are."""
+
+class _Bound(TypedDict):
+    """What is proven of a curve, in the unit of its vertices; the type has no class at run time."""
+
+    longest_edge: float
+    """At least S."""
+    min_rad: float
+    """At most the least M_c."""
+    r: float
+    """At most the largest R that has the theorem's first two conditions; it has all three."""
+    r_c: float
+    """At most sqrt(R^2 - S^2/4)."""
+    inscribed_length: float
+    """At least Length(K_P)."""
+    l_c: float
+    """At least Length(K_P)/R_c."""
+    condition: Literal["bend", "pair"]
+    """What decides R: the bend at one vertex, or the distance of two."""
+    vertices: list[tuple[int, int]]
+    """These, as (component, vertex), both counted from 0."""
 
 class CurveError(ValueError):
     """A curve that cannot be used, and the places: (component, vertex), vertex None for a whole component.
@@ -199,6 +220,12 @@ def balance(components: _Curve) -> _Forces:
 
     The curve is scaled to R_s = 1; the residual is 0 for a critical point of length. Raises `CurveError`
     where edges meet.
+    """
+
+def certify(components: _Curve) -> _Bound:
+    """Bound the ropelength of a curve's type from above, however numbers are rounded.
+
+    Raises `CurveError` where nothing is proven.
     """
 
 def measure(components: _Curve) -> _Measures:

@@ -1,6 +1,7 @@
 """What results have in common: equality by value, plain dictionaries, and a look for notebooks."""
 
 from dataclasses import fields, is_dataclass
+from decimal import Decimal
 from html import escape
 from typing import Any
 
@@ -58,7 +59,7 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
-    return value
+    return f"{value:f}" if isinstance(value, Decimal) else value
 
 
 def _equal(one: Any, other: Any) -> bool:
@@ -72,6 +73,8 @@ def _equal(one: Any, other: Any) -> bool:
 def _short(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.{DIGITS}g}"
+    if isinstance(value, Decimal):
+        return str(value)
     if isinstance(value, np.ndarray):
         return f"<array {' x '.join(map(str, value.shape))}>"
     if isinstance(value, list | tuple):

@@ -69,11 +69,14 @@ fn needed(error: &Error) -> Option<usize> {
 fn places(error: &Error) -> Vec<(usize, Option<usize>)> {
     match *error {
         Error::TooFewVertices { component, .. } => vec![(component, None)],
-        Error::NotFinite { component, vertex } => vec![(component, Some(vertex))],
+        Error::NotFinite { component, vertex } | Error::SharpBend { component, vertex, .. } => {
+            vec![(component, Some(vertex))]
+        }
         Error::Coincident { component, vertex, next } => {
             vec![(component, Some(vertex)), (component, Some(next))]
         }
-        Error::SelfCrossing { component, vertex, other_component, other_vertex } => {
+        Error::SelfCrossing { component, vertex, other_component, other_vertex }
+        | Error::ClosePair { component, vertex, other_component, other_vertex, .. } => {
             vec![(component, Some(vertex)), (other_component, Some(other_vertex))]
         }
         _ => vec![],

@@ -1,7 +1,7 @@
 """The command line: one module a command, imported when it is used.
 
-May import `curve`, `formats`, `invariants`, `jobs`, `naming`, `patience`, `printing`, `starts`, `tables` and
-`tightening`.
+May import `certificates`, `curve`, `formats`, `invariants`, `jobs`, `naming`, `patience`, `printing`,
+`starts`, `tables` and `tightening`.
 """
 
 import io
@@ -19,6 +19,7 @@ from sono.printing import printable
 
 COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",
+    "certify": "Prove bounds on ropelength, and check such proofs.",
     "compare": "Compare ropelengths with the published ones.",
     "convert": "Write curves in another format.",
     "identify": "Name the knot or link of curves.",

@@ -1,0 +1,178 @@
+"""`sono certify FILE|NAME...`: bounds on ropelength that are proven, and certificates that prove them."""
+
+import json
+import os
+import shlex
+import sys
+from contextlib import nullcontext
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sono import tables
+from sono.cli import options, places
+from sono.cli.each import each
+
+if TYPE_CHECKING:
+    from sono.certificates import Certificate
+    from sono.formats import Close, VertexFile
+    from sono.jobs.sources import Source
+
+COLUMNS = ("knot", "n", "certified", "r_c", "min_rad", "decided_by", "file")
+
+
+@click.command("certify")
+@click.argument("given", metavar="FILE|NAME...", nargs=-1, required=True)
+@click.option("--json", "as_json", is_flag=True, help="Write certificates, one a line, instead of a table.")
+@click.option("-o", "--output", metavar="FOLDER", help="Write certificates, and vertices, into this folder.")
+@click.option("--check", metavar="CERTIFICATE", help="Check a certificate of FILE instead of making one.")
+@options.close
+@options.force
+@options.table(COLUMNS)
+def command(
+    given: tuple[str, ...],
+    as_json: bool,
+    output: str | None,
+    check: str | None,
+    close: "Close | None",
+    force: bool,
+    shown: options.Shown,
+) -> None:
+    """Prove that each curve's type has a ropelength of at most so much: L_c, rounded up.
+
+    A FILE is taken as it is, of any scale; - is standard input. A NAME is the rope that the atlas has of the
+    knot. R is held down by a bend or a pair of vertices: component:vertex, both counted from 0. Where the
+    edges are too long for a proof, the message says by how much, and where.
+
+    A certificate is of a file of plain rows x y z, whose SHA-256 it has. With -o the vertices of all else are
+    written as FOLDER/NAME.txt, next to NAME.certificate.json. --check believes nothing that a certificate
+    says, and shares no code with what made it:
+
+    \b
+      sono certify 8_18 -o proofs/
+      sono certify --check proofs/8_18.certificate.json proofs/8_18.txt
+    """
+    if check is not None:
+        if output or as_json or len(given) != 1:
+            raise click.UsageError("--check CERTIFICATE takes one FILE, and nothing is written")
+        sys.exit(_checked(check, given[0]))
+    if as_json and output:
+        raise click.UsageError("give --json or -o FOLDER, not both")
+    if output:
+        places.make_folder(output)
+    maker = _Maker(output, force)
+    with nullcontext() if as_json else shown.table() as table:
+
+        def certify(source: "Source") -> None:
+            curve, certificate = _proven(source)
+            for doubt in curve.doubts():
+                shown.tell(doubt)
+            file = maker.written(source, curve, certificate) if output else str(source)
+            if table:
+                table.row(row(source.name, file, certificate))
+            else:
+                click.echo(json.dumps(maker.document(source, curve, certificate)[1]))
+
+        code = each(given, close, certify)
+    sys.exit(code)
+
+
+def _checked(certificate: str, file: str) -> int:
+    """Have a certificate checked by what knows nothing of its making; return the exit code."""
+    try:
+        bound = import_module("sono.check_certificate").check(certificate, file)["l_c"]
+    except OSError as error:
+        options.complain(f"{error.filename}: cannot be read: {error.strerror}")
+    except ValueError as error:
+        options.complain(f"{certificate}: proves nothing of {file}: {error}")
+    else:
+        click.echo(f"{file}: proven: the ropelength of its type is at most {bound}")
+        return 0
+    return 1
+
+
+def _proven(source: "Source") -> "tuple[VertexFile, Certificate]":
+    """Return a curve, or the atlas's rope of a knot, and what is proven of it. Raises `FormatError`."""
+    # Imported here, since numpy would make --help wait.
+    from sono import starts
+    from sono._core import CurveError
+    from sono.certificates import certify
+    from sono.jobs.curvefiles import located
+    from sono.patience import patiently
+
+    named = source.knot and starts.knows(source.knot)
+    curve = _rope(source) if named else source.read()
+    try:
+        return curve, patiently(lambda: certify(curve.components))
+    except CurveError as error:
+        raise located(error, curve) from error
+
+
+def _rope(source: "Source") -> "VertexFile":
+    """Return the atlas's rope of a knot. Raises `FormatError`."""
+    import numpy as np
+
+    import sono
+    from sono.formats import FormatError, VertexFile
+
+    try:
+        curve = sono.start(source.given, known=True)
+    except ValueError as error:
+        cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one to be certified"
+        raise FormatError(f"{source}: {error}; {cure}") from error
+    lines = [np.arange(len(component)) + 1 for component in curve]
+    title = f"{source.name}, the rope of the atlas"
+    return VertexFile(source.given, list(curve), lines, comments=[title])
+
+
+def row(name: str, file: str, certificate: "Certificate") -> tables.Row:
+    """Return the row of a curve; what readers see of L_c is rounded up as well."""
+    figures: dict[str, Any] = {key: float(getattr(certificate, key)) for key in ("r_c", "min_rad")}
+    figures |= {"n": certificate.n, "components": len(certificate.components), "knot": name, "file": file}
+    figures |= {"certified": certificate.rounded(), "decided_by": str(certificate.decided_by)}
+    return figures
+
+
+@dataclass(frozen=True)
+class _Maker:
+    """Makes the documents, each of a file that it writes into the folder if there is none to be had."""
+
+    folder: str | None
+    force: bool
+
+    def written(self, source: "Source", curve: "VertexFile", certificate: "Certificate") -> str:
+        """Write a certificate into the folder; return the file that it is of. Raises `FormatError`."""
+        from sono import formats
+
+        path = self._path(source, ".certificate.json")
+        file, document = self.document(source, curve, certificate)
+        formats.save(path, json.dumps(document, indent=1) + "\n")
+        return file
+
+    def document(
+        self, source: "Source", curve: "VertexFile", certificate: "Certificate"
+    ) -> tuple[str, dict[str, Any]]:
+        """Return the file that a certificate is of, and its document. Raises `FormatError`."""
+        from sono import formats
+
+        try:
+            return source.given, certificate.document(source.given)
+        except (OSError, ValueError):  # a name, standard input, or a file that is no plain rows
+            pass
+        if self.folder is None:
+            why = "a certificate is of a file of plain rows x y z"
+            raise formats.FormatError(f"{source}: {why}; -o FOLDER writes one, and the certificate")
+        file = self._path(source, ".txt")
+        formats.write(file, curve.components, curve.comments)
+        return file, certificate.document(file)
+
+    def _path(self, source: "Source", suffix: str) -> str:
+        """Return the name of a file in the folder. Raises `FormatError` where that is taken."""
+        from sono.formats import FormatError
+
+        path = os.path.join(self.folder or "", source.stem + suffix)
+        if os.path.exists(path) and not self.force:
+            raise FormatError(f"{path}: exists; --force overwrites it, -o names another folder")
+        return path
