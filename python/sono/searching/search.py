@@ -44,7 +44,7 @@ AHEAD = 32
 """Trials for each worker that are begun ahead of the round they belong to, so that none has to wait."""
 
 FINALISTS = 4
-"""Shapes that are refined after the last round, at most: those that may be the shortest, and others as long as
+"""Shapes that are refined after the last round at most: those that may be the shortest, and others as long as
 there are fewer minima than that."""
 
 RESEATED = 2
