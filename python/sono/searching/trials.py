@@ -23,12 +23,20 @@ from sono.tightening.trial import Recipe, Trial
 FINE_EDGE = 0.2
 """Edge length at which minima are compared."""
 
+SEATINGS = ((1.5, 1), (2, 2))
+"""Ways to seat the beads of a minimum anew: on so many times its vertices, from such an offset, and back."""
+
 POLISHES = 3
 """Attempts to polish a shape on edges of that length, as its own length changes meanwhile."""
 
-ANNEAL = {"anneal_sweeps": 4_000, "anneal_tolerance": 0.1}
-"""The anneal of a trial, which shakes the rope a little. A hot one of 100,000 sweeps leads a trial to the
-shortest shape half again as often, but costs as much as five others: the start decides."""
+GENTLE_ANNEAL = {"anneal_sweeps": 4_000, "anneal_tolerance": 0.1}
+
+WARM_ANNEAL = {"anneal_sweeps": 12_000, "anneal_tolerance": 0.3}
+
+WARM = 4
+"""The anneals of trials, of which one in so many is warm. A gentle one leaves a shape that is near the start,
+a warm one crosses barriers. One of 100,000 sweeps at 0.5 leads to the shortest shape half again as often as a
+gentle one, but costs as much as five whole trials."""
 
 ANNEAL_EDGES = (0.8, 1.2)
 """Edges of the anneal, of other lengths each time: the coarser, the higher the barriers that it crosses."""
@@ -81,7 +89,8 @@ class Source:
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
     seed = abs(variant)
-    recipe = Recipe({}, ANNEAL | {"seed": seed}, seed, _spread(*ANNEAL_EDGES, variant))
+    anneal = GENTLE_ANNEAL if (seed + 2) % WARM else WARM_ANNEAL
+    recipe = Recipe({}, anneal | {"seed": seed}, seed, _spread(*ANNEAL_EDGES, variant))
     try:
         trial = Trial(recipe, source.start(variant, watch))
         engine = done(trial.begin(), watch)
@@ -128,18 +137,17 @@ def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None
 
 
 def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
-    """Polish a minimum on twice the vertices and then on its own number again; the shorter one counts.
+    """Polish a minimum on more vertices and then on its own number again; the shortest one counts.
 
     Beads lie in grooves between those that they touch; among more beads these are shallow, and a rope may
     leave one that held it up, by a thousandth of its length at most.
     """
     n = sum(map(len, minimum.curve))
-    try:
-        fine = done(Polish(minimum.curve, 2 * n, False, 0), watch)
-    except FAILURES:
-        return minimum
-    polish = _polished(fine.best(), n, watch)
-    return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
+    for more, offset in SEATINGS:
+        fine = _polished(minimum.curve, round(more * n), watch, offset)
+        if polish := fine and _polished(fine.best(), n, watch, offset):
+            minimum = min(minimum, _replaced(minimum, polish), key=rank)
+    return minimum
 
 
 def _spread(least: float, most: float, number: int) -> float:
@@ -147,10 +155,10 @@ def _spread(least: float, most: float, number: int) -> float:
     return least + (most - least) * ((0.5 + number * (math.sqrt(5) - 1) / 2) % 1)
 
 
-def _polished(curve: Components, n: int, watch: Watch) -> Polish | None:
-    """Polish a rope on n vertices, unless that fails."""
+def _polished(curve: Components, n: int, watch: Watch, offset: int = 0) -> Polish | None:
+    """Polish a rope on n vertices, from an offset along it, unless that fails."""
     with suppress(*FAILURES):
-        return done(Polish(curve, n, False, 0), watch)
+        return done(Polish(curve, n, False, offset), watch)
     return None
 
 
