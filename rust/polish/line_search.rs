@@ -66,3 +66,31 @@ impl Polish {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use glam::DVec3;
+
+    use super::super::direction::Direction;
+    use super::*;
+    use crate::geometry::curve::Curve;
+
+    #[test]
+    fn a_multiplier_that_would_reach_0_does_not_hold_up_the_others() {
+        let angle = |i| TAU * f64::from(i) / 40.;
+        let vertex = |i| DVec3::new(angle(i).cos(), angle(i).sin(), 0.);
+        let circle = Curve::new(vec![(0..40).map(vertex).collect()]).unwrap();
+        let mut polish = Polish::new(&circle, 40, false, 0, Settings::default()).unwrap();
+        let around = polish.look_around();
+        let mut dz = polish.z.map(|z| 0.5 * z);
+        dz.edges[0] = -1e9;
+        let step = Step { to: Direction::lengthening(&polish.rope.curve, 0.), dz, slope: -1. };
+        let after = polish.multipliers(0.5, &step, &around);
+        for (k, (before, after)) in polish.z.iter().zip(after.iter()).enumerate() {
+            let share = if k == 0 { 1. - polish.settings.most_used } else { 1.25 };
+            assert!((after - share * before).abs() < 1e-12 * before, "{k}: {before} {after}");
+        }
+    }
+}
