@@ -7,7 +7,7 @@ centre, the disc of a bundle turns by so much, and places may be shifted to a ci
 they are turned to. Else it makes a whole number of turns, while strands take the steps that are left, from
 place to place along a simple closed curve through all of them; a motion of the disc makes that the circle.
 
->>> len(bundle(4, 6, 1)), len(bundle(5, -7, 2))
+>>> len(bundle(4, 6, variant=1)), len(bundle(5, -7, variant=2))
 (2, 1)
 """
 
@@ -22,8 +22,8 @@ from sono.starts.torus import check_type
 MOST_STRANDS = 300
 """Strands of a bundle; the curve through their places takes seconds."""
 
-ROOM = 3.0
-"""From the bundle to the axis of the ring that it is closed to, in diameters of a strand."""
+ROOM = 1.0
+"""Left over in the hole of the ring, in diameters of a strand."""
 
 _CENTRES = [((0, 0), 1), ((1 / 2, math.sqrt(1 / 12)), 3), ((1 / 2, 0), 2)]
 """Centres of packings: a place, a triangle, an edge of the lattice, and how often each looks the same in a
@@ -33,21 +33,19 @@ turn; of a place that is not counted, as its own strand would be a component wit
 def bundle(p: int, q: int, variant: int) -> Components:
     """Return the torus knot or link T(p,q) as a bundle, in units of about one rope radius.
 
-    There are gcd(p, q) components, of as many vertices each. Bundles of odd `variant`, from 1, have as many
-    strands as the smaller of |p| and |q|, those of even ones as the larger: the rope goes round that often.
-    The variants 1 and 2 are packed round a strand, 3 and 4 round a triangle of strands, 5 and 6 round a pair,
-    further ones round random centres. pq > 0 is right-handed, pq < 0 its mirror image. Raises ValueError
-    where p or q is zero, or for more than `MOST_STRANDS` strands.
+    There are gcd(p, q) components, of as many vertices each, and as many strands as the smaller of |p| and
+    |q|: with the larger number, ropes end longer. Variant 1 is packed round a strand, 2 between three, 3
+    between two, and further ones round random centres. pq > 0 is right-handed, pq < 0 its mirror image.
+    Raises ValueError where p or q is zero, or for more than `MOST_STRANDS` strands.
     """
     check_type(p, q)
-    strands, twist = sorted((abs(p), abs(q)), reverse=variant % 2 == 0)
+    strands, twist = sorted((abs(p), abs(q)))
     if strands > MOST_STRANDS:
         raise ValueError(
             f"T({p},{q}) as a bundle has {strands:,} strands; {MOST_STRANDS} are the most, give variant 0"
         )
     random = np.random.default_rng(variant)
-    kind = (variant - 1) // 2
-    centre, symmetry = _CENTRES[kind] if kind < len(_CENTRES) else (random.random(2), 1)
+    centre, symmetry = _CENTRES[variant - 1] if variant <= len(_CENTRES) else (random.random(2), 1)
     components = math.gcd(p, q)
     fold = strands // components
     if symmetry % fold == 0:
@@ -105,7 +103,7 @@ def _wound(corners: Floats, strands: int, twist: int, steps: int) -> Components:
     components = math.gcd(strands, twist)
     turns = (twist - steps) / strands
     bundle = np.linalg.norm(corners, axis=1).max()
-    ring = max(bundle + ROOM, bundle * turns)  # strands climb at 45 degrees at most
+    ring = ROOM + bundle * (1 + turns)  # strands climb at 45 degrees at most
     rounds = strands // components
     n = rounds * (math.ceil(4 * np.pi * math.hypot(ring + bundle, turns * bundle)) + 2 * abs(steps))
     check_size(components * n, f"T({strands},{twist}) as a bundle")
