@@ -152,6 +152,7 @@ def test_comparisons_say_what_they_compare_with() -> None:
     assert found.published == pytest.approx(32.7436, abs=1e-3)
     assert found.source
     assert found.l_a_difference == pytest.approx((found.l_a or 0) - (found.published or 0))
+    assert found.kind == "bound"
     assert sono.compare("Hopf", "T(7,3)").published is None
 
 

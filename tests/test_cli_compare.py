@@ -1,12 +1,14 @@
 """`sono compare`: published ropelengths beside ours."""
 
+import math
 from pathlib import Path
 
 import pytest
 from conftest import QUICK, Sono
 
 from sono import formats, starts, tables
-from sono.tables import published
+from sono.starts.drawing import mirror
+from sono.tables import published, reference
 
 ATLAS = Path(__file__).parent.parent / "knots" / "atlas" / "knots.tsv"
 
@@ -22,11 +24,111 @@ def test_the_differences_have_their_signs(folder: Path, sono: Sono) -> None:
     assert chiral["l_a_difference"] == pytest.approx(-0.0204)
     assert chiral["l_c_difference"] == pytest.approx(0.2196)
     assert mirrored["l_a_difference"] == pytest.approx(0.0064)
-    assert link["published"] is None
-    counted, coarse, unknown = result.stderr.splitlines()
+    assert link["published"] == pytest.approx(8 * math.pi)
+    assert (link["kind"], chiral["kind"]) == ("exact", "bound")
+    counted, coarse = result.stderr.splitlines()
     assert coarse.endswith("the error of the limit exceeds the difference: 8_4")
-    assert counted == "sono: of 2 rows L_a is at most the published value in 1, L_c in 1, the limit in 1"
-    assert unknown == "sono: of 1 rows no ropelength is published under the name they have"
+    assert counted == "sono: of 3 rows L_a is at most the published value in 2, L_c in 1, the limit in 1"
+
+
+def test_a_name_of_nothing_published(sono: Sono) -> None:
+    result = sono("compare", "-", "--columns", "published,kind", input="knot\tL_a\nT(7,3)\t80\nmine\t1.5\n")
+    assert result.stdout == "published\tkind\n-\t-\n-\t-\n"
+    assert result.stderr == "sono: of 2 rows no ropelength is published under the name they have\n"
+
+
+@pytest.mark.parametrize(
+    ("names", "length", "kind"),
+    [
+        (
+            ("Hopf", "hopf link", "L2a1", "L2a1{0}", "2^2_1", "T(2,2)", "T(2,-2)", "chain2", "-1 -1"),
+            25.1327,
+            "exact",
+        ),
+        (("chain3", "Hopf#Hopf", "mHopf#L2a1"), 41.6991, "exact"),
+        (("Borromean", "6^3_2", "L6a4{1,0}", "6.3.2"), 58.0060, "critical"),
+        (("6^3_3", "L6n1", "L6n1{0,1}", "mL6n1", "T(3,3)", "T(-3,3)"), 50.35, "numerical"),
+        (("T(24,19)", "T(19,24)", "T(-19,24)"), 949.5, "numerical"),
+        (("3_1#m3_1", "m3_1#3_1", "square", "T(2,3)#T(2,-3)"), 57.0876, "numerical"),
+        (("granny", "m3_1#m3_1", "K3a1#trefoil"), 57.0557, "numerical"),
+        (("4_1#3_1", "m3_1#m4_1", "5/2#3_1"), 65.2554, "numerical"),
+        (("11a_367", "T(2,11)", "K11a367", "m11a367"), 91.8, "bound"),
+    ],
+    ids=lambda value: value[0] if isinstance(value, tuple) else None,
+)
+def test_names_are_matched_by_what_they_name(
+    sono: Sono, names: tuple[str, ...], length: float, kind: str
+) -> None:
+    rows = "".join(f"{name}.tight\t{length}\n" for name in names)
+    result = sono("compare", "-", "--columns", "published,kind", "-q", input=f"knot\tL_a\n{rows}")
+    found = [line.split("\t") for line in result.stdout.splitlines()[1:]]
+    assert len(found) == len(names)
+    assert {what for _, what in found} == {kind}
+    assert len({value for value, _ in found}) == 1
+    assert float(found[0][0]) == pytest.approx(length, abs=0.01 if kind != "bound" else 10)
+
+
+def test_each_published_value_on_its_own(sono: Sono) -> None:
+    columns = "l_a,published,kind,printed,per,source"
+    result = sono("compare", "-", "--all", "--columns", columns, input="knot\tL_a\nT(2,3)\t32.74\nfoo\t1.0\n")
+    *rows, last = [line.split("\t") for line in result.stdout.splitlines()[1:]]
+    assert [row[2] for row in rows] == ["bound", "bound", "numerical", "estimate", "estimate"]
+    assert [row[0] for row in rows] == 5 * ["32.74"]
+    assert rows[0][1] == "32.7436"
+    assert rows[2][1:5] == ["32.745722", "numerical", "16.372861", "diameter"]
+    assert rows[3][1] == "32.742934477"
+    assert last == ["1.0", "-", "-", "-", "-", "-"]
+    assert "of 1 rows L_a is at most" in result.stderr
+    wrong = sono("compare", "-", "--all", "--published", "mine.tsv", input=TABLE)
+    assert (wrong.exit_code, "--all or --published" in wrong.stderr) == (2, True)
+
+
+def test_what_was_checked_of_a_record(sono: Sono) -> None:
+    table = "knot\tL_a\nT(4,4)\t77.3\nT(-25,26)\t1340\n8_4\t71.4\nT(5,5)\t110\n"
+    claims = [
+        line for line in sono("compare", "-", input=table).stderr.splitlines() if "shorter than" in line
+    ]
+    assert [line.split(";")[0] for line in claims] == [
+        "sono: shorter than Klotz 2026: T(4,4)",
+        "sono: shorter than Klotz, Maldonado 2021: T(-25,26)",
+    ]
+    coarse = sono("compare", "-", input="knot\tn\tL_a\tL_c\n6^3_3\t90\t50.23\t51.62\n")
+    assert "too coarse to tell" in coarse.stderr
+    assert "shorter than" not in coarse.stderr
+    assert "DataTightLinksKlotz26.txt of July 2026" in claims[0]
+    assert "77.977" in claims[0]
+
+
+def test_the_sources_are_listed(sono: Sono) -> None:
+    result = sono("compare", "--sources")
+    assert result.exit_code == 0
+    for source in reference.sources().values():
+        assert f"{source.source}\n  {source.citation}\n  over the {source.per}: " in result.stdout
+    assert sono("compare").exit_code == 2
+
+
+def test_a_link_of_another_type_than_its_name(folder: Path, sono: Sono) -> None:
+    shaken = [component[::-1] for component in starts.start("chain3")[::-1]]
+    formats.write("chain3.txt", [shaken[1], shaken[0][::-1], shaken[2]])
+    formats.write("6^3_3.txt", mirror(starts.start("L6n1{0,1}"))[::-1])
+    formats.write("Hopf.txt", starts.start("4^2_1"))
+    formats.write("6^3_2.txt", starts.start("6^3_1"))
+    formats.write("Whitehead.txt", starts.start("5^2_1", variant=3))
+    files = ("chain3.txt", "6^3_3.txt", "Hopf.txt", "6^3_2.txt", "Whitehead.txt")
+    table = sono("measure", *files, "--columns", "knot,n,l_a,file").stdout
+    doubts = [
+        line for line in sono("compare", "-", input=table).stderr.splitlines() if "another type" in line
+    ]
+    assert [line.split(":")[1] for line in doubts] == [" Hopf", " 6^3_2"]
+
+
+def test_a_link_shorter_than_can_be(sono: Sono) -> None:
+    table = "knot\tL_a\tL_c\nHopf\t25.1\t25.1\nchain5\t74.8\t74.84\nT(3,3)\t48.0\t50\n"
+    doubts = [line for line in sono("compare", "-", input=table).stderr.splitlines() if "this type" in line]
+    assert doubts == [
+        "sono: Hopf: is shorter than any rope of this type can be: is it of this type?",
+        "sono: T(3,3): is 5% shorter than published: is it of this type?",
+    ]
 
 
 def test_the_finer_level_counts_for_l_c(folder: Path, sono: Sono) -> None:
@@ -91,8 +193,10 @@ def test_columns_go_by_their_heads_too(sono: Sono) -> None:
 
 def test_the_published_table_has_every_knot() -> None:
     table = published.table()
-    assert list(table) == [row["knot"] for row in starts.table("knots")]
-    assert {row["source"] for row in table.values()} == {"ACPR 2011", "KnotInfo 2026.11.2"}
+    knots = [row["knot"] for row in starts.table("knots")]
+    assert set(knots) < set(table)
+    assert {table[knot]["source"] for knot in knots} == {"ACPR 2011", "KnotInfo 2026.11.2"}
+    assert {table[knot]["kind"] for knot in knots} == {"bound"}
     # Table 1 of Ashton, Cantarella, Piatek and Rawdon.
     assert [table[knot]["published"] for knot in ("3_1", "4_1", "8_18")] == [32.7436, 42.0887, 74.9063]
 
@@ -151,7 +255,7 @@ def test_the_limit_of_the_trefoil_is_within_its_error() -> None:
 def test_one_level_estimates_what_two_levels_tell() -> None:
     if not ATLAS.exists():
         pytest.skip("needs the source tree")
-    rows = tables.read(str(ATLAS))
+    rows = [row for row in tables.read(str(ATLAS)) if row["l_c_fine"]]
     within = below = 0
     for row in rows:
         twice = published.extrapolated(row)

@@ -21,11 +21,6 @@ PROMPT = 8
 ONE = ("--trials", "1", "--minima", "1")
 
 
-@pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trials, "GENTLE", 1)
-
-
 def rows(text: str) -> list[tables.Row]:
     Path("rows.tsv").write_text(text)
     return tables.read("rows.tsv")

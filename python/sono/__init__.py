@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from sono.calls import search as search
     from sono.calls import start as start
     from sono.calls import tighten as tighten
+    from sono.calls import verify as verify
     from sono.calls import write as write
     from sono.certificates import Certificate as Certificate
     from sono.certificates import certify as certify
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from sono.formats import FormatError as FormatError
     from sono.invariants import TooEntangledError as TooEntangledError
     from sono.naming import Identity as Identity
+    from sono.naming import Verdict as Verdict
     from sono.searching import Minimum as Minimum
     from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
@@ -52,6 +54,7 @@ _HOMES = {
     "Measures": "sono.curve",
     "FormatError": "sono.formats",
     "Identity": "sono.naming",
+    "Verdict": "sono.naming",
     "TooEntangledError": "sono.invariants",
     "KnotTypeError": "sono.tightening",
     "Settings": "sono.tightening",
@@ -73,6 +76,7 @@ _HOMES = {
     "search": "sono.calls",
     "start": "sono.calls",
     "tighten": "sono.calls",
+    "verify": "sono.calls",
     "write": "sono.calls",
 }
 

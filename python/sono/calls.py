@@ -18,7 +18,7 @@ from sono.curve import Curve as Curve
 from sono.curve import CurveLike, Forces, Measures, as_components
 from sono.formats.closing import WAYS, Close
 from sono.jobs.workers import Threads
-from sono.naming import Identity
+from sono.naming import Identity, Verdict
 from sono.searching.minima import Minimum, merged
 from sono.searching.search import KEPT, Search
 from sono.searching.trials import FINE_EDGE, Source, Watch, finish, unwatched
@@ -150,6 +150,18 @@ def identify(vertices: Rope) -> Identity:
     return naming.identify(_components(vertices))
 
 
+def verify(one: Rope, other: Rope) -> Verdict:
+    """Tell whether two curves, of any scales, are the same knot or link; see `Verdict`.
+
+    Raises `CurveError` for a curve that is not embedded, `TooEntangledError`, a `ValueError`, where over 1000
+    crossings are left in a diagram.
+
+    >>> verify("T(3,4)", start("8_19", 3)).verdict, verify("Hopf", "L2a1{0}").verdict
+    ('same', 'mirror images')
+    """
+    return naming.verify(_components(one), _components(other))
+
+
 def tighten(
     vertices: Rope,
     n: int | None = None,
@@ -265,4 +277,4 @@ def _components(vertices: Rope) -> list[Any]:
         return as_components(cast("CurveLike", vertices))
     if not starts.knows(vertices) and (os.path.exists(vertices) or os.path.splitext(vertices)[1]):
         raise ValueError(f"{vertices!r} is no name of a knot; sono.read reads a file")
-    return list(starts.start(vertices))
+    return list(starts.drawn(vertices))

@@ -1,6 +1,6 @@
 //! How far along a Newton step constraints and the barrier function allow to go.
 
-use super::barrier::{longest_positive, longest_step};
+use super::barrier::longest_step;
 use super::newton::Step;
 use super::problem::{Multipliers, Surroundings, Unknowns};
 use super::settings::Settings;
@@ -53,16 +53,16 @@ impl Polish {
         None
     }
 
-    /// The multipliers after the share `a` of a step: as far along it as they stay positive.
+    /// The multipliers after the share `a` of a step. Each one goes by itself: were the step as short as
+    /// suits all, the first to reach 0 among thousands would hold up the others for dozens of steps.
     fn multipliers(&self, a: f64, step: &Step, around: &Surroundings) -> Multipliers {
-        let (barrier, factor) = (self.barrier(), self.settings.multiplier_range);
-        let changes = self.z.iter().zip(step.dz.iter());
-        let a_z = longest_positive(self.settings.most_used, changes.map(|(z, dz)| (*z, *dz)));
-        let moved = self.z.map_with(&step.dz, |z, dz| z + a_z * dz);
+        let (barrier, Settings { most_used, multiplier_range, .. }) =
+            (self.barrier(), self.settings);
+        let moved = self.z.map_with(&step.dz, |z, dz| (z + a * dz).max((1. - most_used) * z));
         around.terms.map_with(&moved, |t, z| {
             let [b, c] = t.course(&step.to);
             let force = barrier.force(&Term { g: t.g + a * (b + a * c), ..*t });
-            z.clamp(force / factor, force * factor)
+            z.clamp(force / multiplier_range, force * multiplier_range)
         })
     }
 }

@@ -76,7 +76,7 @@ impl Default for Settings {
             longest_way: 0.1,
             most_used: 0.99,
             least_descent: 1e-4,
-            multiplier_range: 100.,
+            multiplier_range: 1000.,
             patience: 200,
             gliding_share: 0.9,
             restart_factor: 10.,

@@ -27,6 +27,7 @@ COMMANDS = {
     "search": "Find the shortest tight rope of a knot.",
     "start": "Write the starting conformation of a knot.",
     "tighten": "Tighten curves and write the paper's table.",
+    "verify": "Tell whether two curves are the same knot.",
 }
 
 

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from sono.curve import Components
-from sono.invariants.crossings import diagram, linking_matrix, planar_diagram
+from sono.invariants.crossings import Crossings, diagram, linking_matrix, planar_diagram
 from sono.invariants.diagrams import as_crossings, gauss_code, homfly_polynomial, shortened, written
 from sono.invariants.polynomials import alexander_modulo
 from sono.invariants.signatures import signature
@@ -31,8 +31,12 @@ def fingerprint(curve: Components) -> Fingerprint:
     Few passages of strands leave it as it was, but 66 of the 249 knots to 10 crossings share theirs with
     others; see `homfly`. Raises `TooEntangledError`, and `CurveError` for a curve that crosses itself.
     """
-    found = diagram(curve)
-    linking = linking_matrix(found)[np.triu_indices(len(curve), 1)].tolist()
+    return fingerprint_of(diagram(curve))
+
+
+def fingerprint_of(found: Crossings) -> Fingerprint:
+    """Return the fingerprint of a curve by its projection."""
+    linking = linking_matrix(found)[np.triu_indices(len(found.bounds) - 1, 1)].tolist()
     signatures = tuple(signature(found, cmath.exp(2j * math.pi / k)) for k in ORDERS)
     return tuple(linking), signatures, tuple(alexander_modulo(found, k) for k in ORDERS)
 

@@ -36,9 +36,6 @@ FINER_EDGES = (0.1, 0.03)
 SHORTER = 1e-7
 """A rope is shorter than another if its L_a is by so much, relatively."""
 
-NAMED = {"knots", "links", "composites"}
-"""Families whose types have names that a curve is given."""
-
 
 @dataclass(frozen=True)
 class Atlas:
@@ -110,12 +107,14 @@ def confirmed_type(knot: str, curve: Components, file: str) -> str:
     The last is for torus types with many crossings: see `invariants.fingerprint`. Raises `ValueError` if the
     curve is another knot.
     """
-    start = starts.start(knot)
-    wrong, by = fingerprint(curve) != fingerprint(start), "fingerprint"
-    if not wrong and place(knot).family in NAMED:
-        found, there = identify(curve), identify(start)
-        wrong, by = found.names != there.names or found.homfly != there.homfly, found.known
-    if wrong:
+    family = place(knot).family
+    if family == "torus":
+        right, by = fingerprint(curve) == fingerprint(starts.start(knot)), "fingerprint"
+    else:
+        found = identify(curve)
+        names = (knot,) if family == "knots" else identify(starts.start(knot)).names
+        right, by = found.names == names, found.known
+    if not right:
         raise ValueError(f"{file}: is of another knot type than {knot}; remove it or name it otherwise")
     return by
 

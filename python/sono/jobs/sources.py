@@ -124,7 +124,7 @@ def _shortened(knot: str) -> str:
 
 def _drawn(knot: str) -> VertexFile:
     try:
-        curve = starts.start(knot)
+        curve = starts.drawn(knot)
     except ValueError as error:
         raise FormatError(f"{knot}: no such file, nor a knot: {error}") from error
     lines = [np.arange(len(component)) + 1 for component in curve]

@@ -4,5 +4,6 @@ May import `curve`, `invariants` and `records`.
 """
 
 from sono.naming.identity import Identity, identify
+from sono.naming.sameness import Verdict, verify
 
-__all__ = ["Identity", "identify"]
+__all__ = ["Identity", "Verdict", "identify", "verify"]

@@ -97,11 +97,11 @@ def identify(curve: Components) -> Identity:
     found = as_crossings(gauss)
     primes = [prime for piece in pieces for prime in piece]
     may_be = [[prime.names or prime.may_be for prime in piece] for piece in pieces]
-    polynomial = _polynomial(pieces)
+    polynomial = polynomial_of(pieces)
     return Identity(
-        names=_names([[prime.names for prime in piece] for piece in pieces]),
+        names=names_of([[prime.names for prime in piece] for piece in pieces]),
         known=_how(primes),
-        may_be=_names(may_be) if any(prime.may_be for prime in primes) else (),
+        may_be=names_of(may_be) if any(prime.may_be for prime in primes) else (),
         components=len(curve),
         crossings=len(found.sign),
         circles=gauss[0].count([]),
@@ -123,7 +123,7 @@ def _how(primes: list[Prime]) -> Literal["proven", "invariants", "not in the tab
     return "not in the table" if any(prime.is_new for prime in primes) else "undecided"
 
 
-def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
+def names_of(pieces: list[list[list[str]]]) -> tuple[str, ...]:
     """Return the names of what is made of parts that may have these names, if any has one."""
     names: dict[str, None] = {}
     for way in islice(product(*(choices or ["?"] for piece in pieces for choices in piece)), MOST_NAMES):
@@ -133,7 +133,7 @@ def _names(pieces: list[list[list[str]]]) -> tuple[str, ...]:
     return tuple(name for name in names if not set(name) <= set("?#+"))
 
 
-def _polynomial(pieces: list[list[Prime]]) -> Polynomial | None:
+def polynomial_of(pieces: list[list[Prime]]) -> Polynomial | None:
     """Return the HOMFLY polynomial of the whole, if it is known."""
     factors = [prime.polynomial for piece in pieces for prime in piece]
     factors += [{(1, -1): 1, (-1, -1): -1}] * (len(pieces) - 1)

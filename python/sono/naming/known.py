@@ -47,6 +47,16 @@ def must_be_known(prime: Gauss) -> bool:
     return len(right) <= (MOST_OF_KNOTS if len(passages) == 1 else MOST_OF_LINKS)
 
 
+@cache
+def is_amphichiral(name: str) -> bool:
+    """Tell whether a type of the table is its own mirror image.
+
+    >>> is_amphichiral("4_1"), is_amphichiral("3_1"), is_amphichiral("T(2,99)")
+    (True, False, False)
+    """
+    return re.search(rf"^{re.escape(name)}\t.*{SAME_AS_MIRROR}$", _text(), re.MULTILINE) is not None
+
+
 def key(polynomial: Polynomial) -> str:
     """Return three letters that a polynomial shares with its mirror image, and hardly with another."""
     both = sorted(sorted(p.items()) for p in (polynomial, mirrored_polynomial(polynomial)))

@@ -7,13 +7,13 @@
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sono import _core
 from sono.invariants.diagrams import Gauss, Polynomial, as_crossings, homfly_polynomial
 from sono.invariants.identify import ORDERS
 from sono.invariants.signatures import signature
-from sono.naming.known import Type, must_be_known, sharing
+from sono.naming.known import Type, mirrored, mirrored_polynomial, must_be_known, sharing
 
 MOST_SIMPLER, MOST_PROOF = 1_000, 10_000
 """Diagrams that are looked at, for one with fewer crossings and for a proof; 10,000 take some 0.3 s."""
@@ -46,6 +46,15 @@ def pieces_of(gauss: Gauss) -> list[list[Prime]]:
     if unknown and max(unknown) <= MOST_UNKNOWN:
         pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_PROOF)]
     return pieces
+
+
+def mirror_of(prime: Prime) -> Prime:
+    """Return the mirror image of a prime part."""
+    image = mirrored(prime.diagram)
+    if prime.names or prime.may_be:
+        return _known(image)
+    polynomial = prime.polynomial
+    return replace(prime, diagram=image, polynomial=polynomial and mirrored_polynomial(polynomial))
 
 
 def _known(prime: Gauss) -> Prime:

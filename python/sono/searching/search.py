@@ -1,8 +1,8 @@
 """The search for the shortest tight rope of a knot: many trials from different starts.
 
 The tight shape that a rope ends in depends on how it begins, and the shortest one is found by few starts in a
-hundred. A trial collapses a start, anneals it with SONO on few beads and polishes it there, in half a second
-for 8 crossings; what decides is the variety of the starts, so each trial takes another variant of
+hundred. A trial collapses a start, anneals it with SONO on few beads and polishes it there, in a quarter of a
+second for 8 crossings; what decides is the variety of the starts, so each trial takes another variant of
 `starts.start`. The most promising shapes are refined to finer edges, where minima are told apart. A search
 gives the same minima whatever the number of workers.
 """
@@ -29,10 +29,13 @@ from sono.searching.minima import (
 from sono.searching.trials import Source, attempt, refine, reseat
 from sono.tightening import Stopped
 
-ROUND = 8
+ROUND = 4
 
-REFINED = 2
-"""After each round of so many trials so many of its shapes are refined."""
+REFINED = 1
+"""After each round of so many trials so many shapes are refined at most, those that may be the shortest."""
+
+BLUR = 3e-3
+"""Share of its length by which a shape gets shorter at most when it is refined."""
 
 LAG = 32
 """Rounds that may pass at most until a refined shape is waited for."""
@@ -41,10 +44,14 @@ AHEAD = 32
 """Trials for each worker that are begun ahead of the round they belong to, so that none has to wait."""
 
 FINALISTS = 4
-"""Shapes that are refined after the last round."""
+"""Shapes that are refined after the last round at most: those that may be the shortest, and others as long as
+there are fewer minima than that."""
 
 RESEATED = 2
-"""Minima whose beads are seated anew at the end."""
+"""Minima whose beads are seated anew at the end, at most."""
+
+GROOVE = 1e-3
+"""Share of its length by which a minimum gets shorter at most when its beads are seated anew."""
 
 KEPT = 24
 """Unrefined shapes that are remembered, and minima."""
@@ -147,10 +154,10 @@ class Search:
     def _end(self, source: Source, submit: Submit, waiting: deque[Waiting]) -> Iterator[None]:
         """Refine the best shapes that are left, and seat the best minima anew."""
         self._keep(waiting, len(waiting), source)
-        self._refine(FINALISTS, submit, waiting)
+        self._refine(FINALISTS, submit, waiting, anyway=FINALISTS - len(self.minima))
         self._keep(waiting, len(waiting), source)
         yield
-        before = self.minima[:RESEATED]
+        before = [minimum for minimum in self.minima[:RESEATED] if self._may_win(minimum, GROOVE)]
         reseating = [submit(reseat, minimum) for minimum in before]
         for minimum, seated in zip(before, reseating, strict=True):
             if again := self.confirmed(seated(), source):
@@ -164,18 +171,24 @@ class Search:
             return first + trial
         return -(first + trial // 2 + 1) if trial % 2 else first + trial // 2
 
-    def _refine(self, most: int, submit: Submit, waiting: deque[Waiting]) -> None:
-        """Begin to refine the shortest shapes; they stay in the list until they are done.
+    def _refine(self, most: int, submit: Submit, waiting: deque[Waiting], anyway: int = 0) -> None:
+        """Begin to refine the shortest shapes that may win, and so many `anyway`.
 
-        At first they are waited for after the next round, later after so many trials as there were by half:
-        many workers make many trials while one refines a shape.
+        They stay in the list until they are done. At first they are waited for after the next round, later
+        after so many trials as there were by half: many workers make many trials while one refines a shape.
         """
         due = self.trials + ROUND * min(max(self.trials // (2 * ROUND), 1), LAG)
         under_way = [shape.radii for _, shape in self.refining]
         fresh = [s for s in self.shapes if not any(alike(s.radii, radii) for radii in under_way)]
-        for shape in fresh[:most]:
+        for i, shape in enumerate(fresh[:most]):
+            if i >= anyway and not self._may_win(shape, BLUR):
+                break
             self.refining.append((due, shape))
             waiting.append(submit(refine, shape))
+
+    def _may_win(self, rope: Shape | Minimum, share: float) -> bool:
+        """Tell whether what gets shorter by this share may become no longer than the shortest minimum."""
+        return not self.minima or (1 - share) * rope.length <= self.minima[0].length
 
     def _take(self, shape: Shape) -> None:
         """Count a trial, and remember its shape if it is new and may lead to a minimum that is kept."""

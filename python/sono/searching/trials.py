@@ -18,27 +18,28 @@ from sono.searching.minima import Minimum, Shape, has_edges, radii_of_gyration, 
 from sono.starts.scramble import scramble
 from sono.tightening import polished
 from sono.tightening.engines import done, status_of
-from sono.tightening.trial import HOT, Recipe, Trial
+from sono.tightening.trial import Recipe, Trial
 
 FINE_EDGE = 0.2
 """Edge length at which minima are compared."""
 
+SEATINGS = ((1.5, 1), (2, 2))
+"""Ways to seat the beads of a minimum anew: on so many times its vertices, from such an offset, and back."""
+
 POLISHES = 3
 """Attempts to polish a shape on edges of that length, as its own length changes meanwhile."""
 
-HOT_ANNEAL = {"anneal_sweeps": 100_000, "anneal_tolerance": HOT}
+GENTLE_ANNEAL = {"anneal_sweeps": 4_000, "anneal_tolerance": 0.1}
 
-GENTLE_ANNEAL = {"anneal_sweeps": 5_000, "anneal_tolerance": 0.1}
+WARM_ANNEAL = {"anneal_sweeps": 12_000, "anneal_tolerance": 0.3}
 
-GENTLE = 2 / 3
-"""The anneals of trials, and the share of the gentle ones. A hot anneal crosses barriers and leads many
-starts to the same few shapes; a gentle one, of fewer sweeps, keeps rarer shapes that are near the start."""
+WARM = 4
+"""The anneals of trials, of which one in so many is warm. A gentle one leaves a shape that is near the start,
+a warm one crosses barriers. One of 100,000 sweeps at 0.5 leads to the shortest shape half again as often as a
+gentle one, but costs as much as five whole trials."""
 
 ANNEAL_EDGES = (0.8, 1.2)
 """Edges of the anneal, of other lengths each time: the coarser, the higher the barriers that it crosses."""
-
-OFFSETS = 2
-"""Offsets along the rope from which a shape is refined; the shortest result counts."""
 
 MOST_BEADS = 10_000
 """Beads up to which a trial goes on. A thin start may jam at once; the rest is hours."""
@@ -87,8 +88,8 @@ class Source:
 
 def attempt(source: Source, variant: int, watch: Watch = unwatched) -> Shape:
     """Make one trial. A start that cannot be drawn or collapsed gives a shape without a curve."""
-    anneal = GENTLE_ANNEAL if _spread(0, 1, variant, math.sqrt(2)) < GENTLE else HOT_ANNEAL
     seed = abs(variant)
+    anneal = GENTLE_ANNEAL if (seed + 2) % WARM else WARM_ANNEAL
     recipe = Recipe({}, anneal | {"seed": seed}, seed, _spread(*ANNEAL_EDGES, variant))
     try:
         trial = Trial(recipe, source.start(variant, watch))
@@ -136,34 +137,29 @@ def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None
 
 
 def reseat(minimum: Minimum, watch: Watch = unwatched) -> Minimum:
-    """Polish a minimum on twice the vertices and then on its own number again; the shorter one counts.
+    """Polish a minimum on more vertices and then on its own number again; the shortest one counts.
 
     Beads lie in grooves between those that they touch; among more beads these are shallow, and a rope may
     leave one that held it up, by a thousandth of its length at most.
     """
     n = sum(map(len, minimum.curve))
-    try:
-        fine = done(Polish(minimum.curve, 2 * n, False, 0), watch)
-    except FAILURES:
-        return minimum
-    polish = _polished(fine.best(), n, watch)
-    return min(minimum, _replaced(minimum, polish), key=rank) if polish else minimum
+    for more, offset in SEATINGS:
+        fine = _polished(minimum.curve, round(more * n), watch, offset)
+        if polish := fine and _polished(fine.best(), n, watch, offset):
+            minimum = min(minimum, _replaced(minimum, polish), key=rank)
+    return minimum
 
 
-def _spread(least: float, most: float, number: int, step: float = (math.sqrt(5) - 1) / 2) -> float:
-    """Spread numbers evenly over a range by multiples of an irrational step, by default the golden ratio."""
-    return least + (most - least) * ((0.5 + number * step) % 1)
+def _spread(least: float, most: float, number: int) -> float:
+    """Spread numbers evenly over a range by multiples of the golden ratio."""
+    return least + (most - least) * ((0.5 + number * (math.sqrt(5) - 1) / 2) % 1)
 
 
-def _polished(curve: Components, n: int, watch: Watch) -> Polish | None:
-    """Polish a rope on n vertices from a few offsets along it, and return the shortest, if there is any."""
-    found = []
-    for offset in range(OFFSETS):
-        with suppress(*FAILURES):
-            found.append(done(Polish(curve, n, False, offset), watch))
-    return min(
-        found, key=lambda polish: (not _is_tight(polish), status_of(polish).best.l_a_or_l_p), default=None
-    )
+def _polished(curve: Components, n: int, watch: Watch, offset: int = 0) -> Polish | None:
+    """Polish a rope on n vertices, from an offset along it, unless that fails."""
+    with suppress(*FAILURES):
+        return done(Polish(curve, n, False, offset), watch)
+    return None
 
 
 def _replaced(minimum: Minimum, polish: Polish) -> Minimum:

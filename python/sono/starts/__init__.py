@@ -3,9 +3,9 @@
 May import `curve`, `invariants` and `naming`.
 """
 
+from sono.starts.canonical import canonical
 from sono.starts.names import has_variants, knows, names, start
-from sono.starts.shapes import known
-from sono.starts.tabled import tabled_name
+from sono.starts.shapes import drawn, known
 from sono.starts.tables import table
 
-__all__ = ["has_variants", "known", "knows", "names", "start", "table", "tabled_name"]
+__all__ = ["canonical", "drawn", "has_variants", "known", "knows", "names", "start", "table"]

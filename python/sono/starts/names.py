@@ -20,6 +20,7 @@ from contextlib import suppress
 from sono.curve import Components
 from sono.starts import codes
 from sono.starts.braids import braid
+from sono.starts.bundles import bundle
 from sono.starts.diagrams import Diagram, reduced
 from sono.starts.drawing import mirror
 from sono.starts.flypes import flyped
@@ -39,13 +40,16 @@ OUTSIDES = 20
 _INTEGER = r"-?\d{1,999}"
 _INTEGERS = rf"[(\[]({_INTEGER}(?:[\s,]+{_INTEGER})*)[)\]]"
 
+TORUS = rf"T(?:orus\s*(?:Knot|Link))?\s*_?[(\[{{]({_INTEGER})[\s,]+({_INTEGER})[)\]}}]"
+CHAIN = r"chain\s*(\d{1,999})"
+BRAID = rf"{_INTEGER}(?:[\s,]+{_INTEGER})+"
+"""Patterns of torus types, chains of rings and braid words."""
+
 _CURVES: dict[str, Callable[[re.Match[str]], Components]] = {
     "unknot|0_1": lambda match: chain(1),
-    rf"T(?:orus\s*(?:Knot|Link))?\s*_?[(\[{{]({_INTEGER})[\s,]+({_INTEGER})[)\]}}]": lambda match: torus(
-        int(match[1]), int(match[2])
-    ),
-    r"chain\s*(\d{1,999})": lambda match: chain(int(match[1])),
-    rf"{_INTEGER}(?:[\s,]+{_INTEGER})+": lambda match: braid(_integers(match[0])),
+    TORUS: lambda match: torus(int(match[1]), int(match[2])),
+    CHAIN: lambda match: chain(int(match[1])),
+    BRAID: lambda match: braid(_integers(match[0])),
 }
 """What is drawn as a curve: patterns, without spaces round commas and brackets, and what draws it."""
 
@@ -71,12 +75,20 @@ def names() -> list[str]:
 
 def has_variants(name: str) -> bool:
     """Tell whether further variants of this name are more than scrambles of the plain one."""
-    return all(map(_is_drawn, summands(name)))
+    return all(_is_drawn(part) or _is_torus(part) for part in summands(name))
 
 
 def knows(name: str) -> bool:
     """Tell whether this looks like the name of a knot, without drawing it."""
-    return all(_is_drawn(part) or _matched(part.name, _CURVES) for part in summands(name))
+    return all(_is_drawn(part) or matched(part.name, _CURVES) for part in summands(name))
+
+
+def crossings(name: str) -> int:
+    """Return how many crossings a name has itself: a code, a pretzel, a braid word, or so; 0 for others."""
+    if found := matched(name, _DIAGRAMS):
+        pattern, match = found
+        return len(_DIAGRAMS[pattern](match).far) // 4
+    return len(_integers(name)) if matched(name, [BRAID]) else 0
 
 
 def start(name: str, variant: int = 0) -> Components:
@@ -93,8 +105,8 @@ def start(name: str, variant: int = 0) -> Components:
     `variant` is another conformation of the same type. Those of knots and links in the tables are random arc
     presentations, some of them with more columns than needed, and the negative ones are drawn from a planar
     diagram after random flypes. Pretzels, two-bridge links and codes are always drawn from a diagram, which
-    the negative variants flype first. All others are
-    isotopic scrambles. Raises ValueError, with the nearest known name, for anything else.
+    the negative variants flype first. Torus types are bundles (see `bundles`), and their negative variants,
+    and all of others, isotopic scrambles. Raises ValueError, with the nearest known name, for anything else.
     """
     parts = summands(name)
     if not all(part.name for part in parts):
@@ -125,21 +137,23 @@ def _drawn(part: Part, variant: int) -> Components:
     name = part.name
     if row := table_row(spelled(name)):
         return conformation(row, variant)
-    if found := _matched(name, _DIAGRAMS):
+    if found := matched(name, _DIAGRAMS):
         pattern, match = found
         diagram = reduced(_DIAGRAMS[pattern](match))
         return lifted(flyped(diagram, -variant) if variant < 0 else diagram, abs(variant))
-    found = _matched(name, _CURVES)
+    found = matched(name, _CURVES)
     if not found:
         raise unknown(part, names())
-    if variant < 0:
-        raise ValueError(f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more")
     pattern, match = found
+    if pattern == TORUS and variant > 0:
+        return bundle(int(match[1]), int(match[2]), variant)
+    if pattern != TORUS and variant < 0:
+        raise ValueError(f"variant = {variant}: {name} has no planar diagram to draw it from; give 0 or more")
     curve = _CURVES[pattern](match)
-    return scramble(curve, variant) if variant else curve
+    return scramble(curve, abs(variant)) if variant else curve
 
 
-def _matched(name: str, patterns: Iterable[str]) -> tuple[str, re.Match[str]] | None:
+def matched(name: str, patterns: Iterable[str]) -> tuple[str, re.Match[str]] | None:
     """Return the pattern that a name fits, and how."""
     name = "0_1" if spelled(name) == "0_1" else re.sub(r"\s*([()\[\]{},/])\s*", r"\1", name)
     matches = ((pattern, re.fullmatch(pattern, name, re.IGNORECASE | re.DOTALL)) for pattern in patterns)
@@ -148,7 +162,13 @@ def _matched(name: str, patterns: Iterable[str]) -> tuple[str, re.Match[str]] | 
 
 def _is_drawn(part: Part) -> bool:
     """Tell whether this looks like the name of something that has a planar diagram."""
-    return bool(is_tabled(spelled(part.name)) or _matched(part.name, _DIAGRAMS))
+    return bool(is_tabled(spelled(part.name)) or matched(part.name, _DIAGRAMS))
+
+
+def _is_torus(part: Part) -> bool:
+    """Tell whether this is the name of a torus type, which has bundles."""
+    found = matched(part.name, _CURVES)
+    return found is not None and found[0] == TORUS
 
 
 def _integers(text: str) -> list[int]:

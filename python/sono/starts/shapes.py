@@ -16,20 +16,18 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 
 from sono.curve import Components
+from sono.naming.known import is_amphichiral
 from sono.starts import archive
 from sono.starts.drawing import mirror
 from sono.starts.links import link_row, oriented_like
 from sono.starts.names import start
 from sono.starts.spelling import Part, spelled, summands
-from sono.starts.tabled import tabled_name
+from sono.starts.tabled import NoTableError, tabled_name
 
 FAMILIES = ("knots", "links", "composites", "torus")
 """Prime knots and prime links by their names in the tables, connected sums, and torus knots and links."""
 
 FOLDER: Traversable = resources.files("sono").joinpath("data", "atlas")
-
-ACHIRAL = {"4_1", "6_3", "8_3", "8_9", "8_12", "8_17", "8_18"}
-"""Knots to 8 crossings that are their own mirror images, as parts of sums."""
 
 _TORUS = re.compile(r"T[(\[{](-?\d{1,9}),(-?\d{1,9})[)\]}]", re.IGNORECASE)
 
@@ -80,6 +78,19 @@ def known(name: str) -> Components | None:
     return None
 
 
+def drawn(name: str) -> Components:
+    """Return what `starts.start` draws, or the rope known where its table is not installed.
+
+    Raises `ValueError` for a name that is neither.
+    """
+    try:
+        return start(name)
+    except NoTableError:
+        if (rope := known(name)) is None:
+            raise
+        return rope
+
+
 @cache
 def ropes(family: str) -> dict[str, bytes]:
     """Return the ropes of a family as the package has them, by their names."""
@@ -88,16 +99,16 @@ def ropes(family: str) -> dict[str, bytes]:
 
 
 def _sum(parts: Sequence[Part]) -> tuple[str, bool]:
-    """Return the name of a sum or of its mirror image, with as few m as may be, and whether it is that."""
+    """Return the name of a sum or of its mirror image as `canonical` has it, and whether it is that."""
     ways = []
     for mirrored in (False, True):
-        signs = [
-            (tabled_name(part.name), part.mirrored != mirrored and part.name not in ACHIRAL) for part in parts
-        ]
-        ordered = sorted(signs, key=lambda sign: (_numbers(sign[0]), sign[1]))
-        ways.append((sum(m for _, m in ordered), "#".join("m" * m + name for name, m in ordered), mirrored))
-    _, name, mirrored = min(ways, key=lambda way: way[0])
-    return name, mirrored
+        signs = []
+        for part in parts:
+            knot = tabled_name(part.name)
+            signs.append(Part(knot, part.mirrored != mirrored and not is_amphichiral(knot)))
+        name = "#".join(map(str, sorted(signs, key=lambda part: (_numbers(part.name), str(part)))))
+        ways.append((name.count("m"), name, mirrored))
+    return min(ways)[1:]
 
 
 def _numbers(name: str) -> list[int]:

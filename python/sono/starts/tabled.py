@@ -29,6 +29,11 @@ SIZES = 4
 _TORI = {"3_1": (2, 3), "5_1": (2, 5), "7_1": (2, 7), "8_19": (3, 4), "9_1": (2, 9)}
 """Knots that are drawn shorter so than as the braids of their rows."""
 
+
+class NoTableError(ValueError):
+    """A name of a table that is not installed."""
+
+
 _LARGE = re.compile(r"(1[123][an]_|L1[01][an])\d{1,9}(\{[01](,[01])*\})?", re.IGNORECASE)
 
 
@@ -42,7 +47,7 @@ def knot_rows() -> dict[str, dict[str, str]]:
 def table_row(name: str) -> dict[str, str] | None:
     """Return the row of a knot or link, if the tables have it.
 
-    Raises ValueError where its table is in the extra sono[knotinfo], and that is not installed.
+    Raises `NoTableError` where its table is in the extra sono[knotinfo], and that is not installed.
     """
     if row := knot_rows().get(name.casefold()) or link_row(name):
         return row
@@ -52,7 +57,7 @@ def table_row(name: str) -> dict[str, str] | None:
         return knotinfo.link_row(name) if name[0] in "lL" else knotinfo.knot_row(name.casefold())
     except ImportError:
         what, most = ("links", 9) if name[0] in "lL" else ("knots", 10)
-        raise ValueError(
+        raise NoTableError(
             f"{name!r}: the table of {what} of more than {most} crossings is an extra; "
             "pip install 'sono[knotinfo]'"
         ) from None

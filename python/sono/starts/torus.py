@@ -23,8 +23,7 @@ def torus(p: int, q: int, n: int | None = None) -> Components:
     symmetry of the curve. pq > 0 is right-handed, pq < 0 its mirror image. Raises ValueError where p or q is
     zero, n is less than 3, or there would be over `MOST_VERTICES`.
     """
-    if p == 0 or q == 0:
-        raise ValueError(f"T({p},{q}) is no torus knot: p and q must not be zero")
+    check_type(p, q)
     components = math.gcd(p, q)
     long, short = abs(p) // components, abs(q) // components
     n = short * max(3, round(14 * (long + short) / short)) if n is None else n
@@ -43,6 +42,12 @@ def torus(p: int, q: int, n: int | None = None) -> Components:
         z = -math.copysign(1, p * q) * np.sin(through)
         curve.append(np.column_stack([rho * np.cos(around), rho * np.sin(around), z]))
     return curve
+
+
+def check_type(p: int, q: int) -> None:
+    """Refuse what is no torus knot or link."""
+    if p == 0 or q == 0:
+        raise ValueError(f"T({p},{q}) is no torus knot: p and q must not be zero")
 
 
 def chain(rings: int) -> Components:

@@ -4,7 +4,7 @@ Each row is written and flushed as soon as it is finished, so that a later failu
 Markdown and LaTeX are for readers: they round, and head their columns with the paper's symbols, L_p. TSV, CSV
 and JSON are for the next program: they keep every digit, and call a column by its key, l_p. Wherever a column
 is named, either will do. May import `formats`, `printing`, and for what is
-published `starts` and `invariants`.
+published `starts`.
 """
 
 from collections.abc import Sequence

@@ -10,14 +10,13 @@ which a tenth is in doubt.
 
 import os
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import cache
 
 from sono import formats, starts, tables
 from sono.formats import FormatError
-from sono.invariants import fingerprint
-from sono.starts.drawing import mirror
-from sono.tables import Row, Value
+from sono.starts.likeness import may_be_alike
+from sono.tables import Row, Value, reference
 
 BELOW = 0.015
 IN_DOUBT = (0.03, 0.2)
@@ -28,17 +27,22 @@ L_c - L_p; below dl = GROOVED both are less, in proportion to dl."""
 REMAINS = 0.1
 """The share of an extrapolation that is in doubt."""
 
+SHOWN = 12
+"""Knots that a message names at most."""
+
+VALUE = ("source", "kind", "printed", "per")
+"""What there is to say of a published value."""
+
+ROUNDING = 1e-6
+"""By how much less than a bound L_c may be computed."""
+
 FAR_BELOW = 0.02
 """No published ropelength of a prime knot to 10 crossings is longer than ours by half as much."""
 
 
-@cache
-def table() -> dict[str, Row]:
-    """Return the shortest published ropelengths of prime knots: rows with knot, published and source."""
-    return {
-        row["knot"]: {"knot": row["knot"], "published": float(row["ropelength"]), "source": row["source"]}
-        for row in starts.table("published")
-    }
+def table() -> Mapping[str, Row]:
+    """Return what ropes are compared with, by any name of a knot or link: see `reference`."""
+    return reference.Compared()
 
 
 def from_file(path: str) -> dict[str, Row]:
@@ -50,28 +54,61 @@ def from_file(path: str) -> dict[str, Row]:
         _type(row["knot"]): {
             "published": row.get("published") or row.get("l_a"),
             "source": row.get("source") or path,
+            "kind": row.get("kind"),
         }
         for row in rows
     }
 
 
 def _type(knot: Value) -> str:
-    """Return the name of a knot, as tables have it, without what files and mirror images add to it."""
-    stem = re.sub(r"(\.tight|\.n\d+|\.best\d*)+$", "", str(knot))
-    return starts.tabled_name(re.sub("^m(?=.)", "", stem, flags=re.IGNORECASE))
+    """Return the one name of a knot and its mirror image, without what files add to it."""
+    return starts.canonical(_name(knot))
 
 
-def beside(row: Row, published: dict[str, Row]) -> Row:
+def _name(knot: Value) -> str:
+    """Return the name of a knot without what files add to it."""
+    return re.sub(r"(\.tight|\.n\d+|\.best\d*)+$", "", str(knot))
+
+
+def beside(row: Row, published: Mapping[str, Row], told: Sequence[str] = ("source",)) -> Row:
     """Add to a row what is published on its knot, or on its mirror image, and the differences.
 
-    The difference of L_c is that of the finer level, where the row has one; a limit has a difference too.
+    What is `told` of it is some of `VALUE`. The difference of L_c is that of the finer level, where the row
+    has one; a limit has a difference too.
     """
-    other = published.get(_type(row["knot"]), {})
-    bound, source = other.get("published"), other.get("source")
+    return _compared(row, published.get(_type(row["knot"]), {}), told)
+
+
+def beside_all(row: Row) -> list[Row]:
+    """Return a row for each published value, likewise, or one without any."""
+    return [_compared(row, value, VALUE) for value in reference.values(_type(row["knot"])) or [{}]]
+
+
+def _compared(row: Row, value: Row, told: Sequence[str]) -> Row:
     ours = {"l_a": row.get("l_a"), "l_c": row.get("l_c_fine") or row.get("l_c")}
     ours |= {"limit": row["limit"]} if "limit" in row else {}
-    differences = {f"{key}_difference": _difference(value, bound) for key, value in ours.items()}
-    return {**row, "published": bound, "source": source, **differences}
+    bound = value.get("published")
+    differences = {f"{key}_difference": _difference(length, bound) for key, length in ours.items()}
+    return {**row, "published": bound, **{key: value.get(key) for key in told}, **differences}
+
+
+def claims(rows: Sequence[Row]) -> Iterator[str]:
+    """Say what was checked of what reached us at second hand, where ropes, after `beside`, are shorter."""
+    shorter = [row for row in rows if below(row["l_a_difference"], 0) and not is_too_coarse(row)]
+    for key, source in reference.sources().items():
+        names = [str(row["knot"]) for row in shorter if row["source"] == key]
+        if names and source.at_second_hand:
+            yield f"shorter than {key}: {listed(names)}; {source.place}; {source.checked}"
+
+
+def below(difference: Value, bound: float) -> bool:
+    """Tell whether there is a difference and it is below this."""
+    return isinstance(difference, float) and difference < bound
+
+
+def listed(names: Sequence[str]) -> str:
+    """Name some knots, but no more than `SHOWN`."""
+    return ", ".join(names[:SHOWN]) + (", ..." if len(names) > SHOWN else "")
 
 
 def extrapolated(row: Row) -> Row:
@@ -88,13 +125,14 @@ def is_too_coarse(row: Row) -> bool:
 
 def doubt(row: Row) -> str | None:
     """Say why the rope of a row, after `beside`, is of another knot than its name says, if it seems so."""
-    name, file = _type(row["knot"]), row.get("file")
+    name, file = _name(row["knot"]), row.get("file")
     if isinstance(file, str) and os.path.isfile(file):
         with suppress(ValueError):  # a name of no known knot, or a file of no curve
-            start = starts.start(name)
-            if fingerprint(formats.read(file).components) in map(fingerprint, (start, mirror(start))):
+            if may_be_alike(formats.read(file).components, starts.start(name)):
                 return None
             return f"{row['knot']}: the curve in {file} is of another type than {name}"
+    if row.get("kind") == "exact" and below(row.get("l_c_difference"), -ROUNDING):
+        return f"{row['knot']}: is shorter than any rope of this type can be: is it of this type?"
     difference, bound = row.get("l_a_difference"), row.get("published")
     if isinstance(difference, float) and isinstance(bound, float) and -difference > FAR_BELOW * bound:
         return f"{row['knot']}: is {-difference / bound:.0%} shorter than published: is it of this type?"

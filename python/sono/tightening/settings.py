@@ -72,7 +72,7 @@ class Settings(Record):
     longest_way: float = 0.1
     most_used: float = 0.99
     least_descent: float = 1e-4
-    multiplier_range: float = 100.0
+    multiplier_range: float = 1000.0
     patience: int = 200
     gliding_share: float = 0.9
     restart_factor: float = 10.0
