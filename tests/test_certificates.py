@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import sono as package
-from sono import _core, certificates, formats
+from sono import _core, certificates, check_certificate, formats
 
 Curve = Sequence[NDArray[np.float64]]
 
@@ -247,11 +247,7 @@ def test_wrong_options(sono: Sono, arguments: list[str]) -> None:
     assert (result.exit_code, result.stdout) == (2, "")
 
 
-CHECKER = "sono.check_certificate"
-
-
 def test_a_certificate_is_checked(folder: Path, sono: Sono) -> None:
-    pytest.importorskip(CHECKER)
     assert sono("certify", "8_18", "Hopf.txt", "-o", "proofs").exit_code == 0
     rope, proof = "proofs/8_18.txt", Path("proofs/8_18.certificate.json")
     result = sono("certify", "--check", str(proof), rope)
@@ -288,7 +284,6 @@ def test_what_is_certified_is_checked(
     linked: bool,
     seed: int,
 ) -> None:
-    checker = pytest.importorskip(CHECKER)
     t = 2 * np.pi * np.arange(n) / n
     t += uneven * np.sin(t)
     (p, q), random = shape, np.random.default_rng(seed)
@@ -304,4 +299,42 @@ def test_what_is_certified_is_checked(
     package.write(path, curve)
     proof = path.with_suffix(".json")
     proof.write_text(json.dumps(certificate.document(path)))
-    assert checker.check(proof, path)["l_c"] == str(certificate.l_c)
+    assert check_certificate.check(proof, path)["l_c"] == str(certificate.l_c)
+
+
+def stadium(by: float) -> NDArray[np.float64]:
+    """Two half circles of radius 1 and two straights, one half being moved away by so much."""
+    angle = np.pi * (np.arange(50) + 0.5) / 50
+    half = np.column_stack([np.sin(angle), np.cos(angle), 0 * angle])
+    x = 2 - 0.1 * np.arange(1, 40)
+    straight = np.column_stack([x, np.full(39, -1.0), 0 * x])
+    right, left = np.array([2 + by, 0, 0]), np.array([-2, 0, 0])
+    return np.concatenate([half + right, straight, left - half, -straight])
+
+
+def nudged(kind: str, by: float) -> list[NDArray[np.float64]]:
+    """A curve whose contact, bend or length has been nudged the wrong way."""
+    if kind == "length":
+        return [stadium(by)]
+    if kind == "bend":
+        ellipse = circle(200) * [2, 1, 1]
+        ellipse[0] *= 1 + by
+        return [ellipse]
+    ring, other = circle(60), circle(60)[:, [0, 2, 1]] + [1, 0, 0]
+    other[30] += [by, 0, 0]  # its vertex in the centre of the first ring, towards the vertex (1, 0, 0)
+    return [ring, other]
+
+
+@pytest.mark.parametrize("kind", ["contact", "bend", "length"])
+def test_what_is_nudged_the_wrong_way_is_refused(tmp_path: Path, kind: str) -> None:
+    path, proof = tmp_path / "curve.txt", tmp_path / "curve.json"
+    package.write(path, nudged(kind, 0))
+    document = package.certify(nudged(kind, 0)).document(path)
+    proof.write_text(json.dumps(document))
+    assert check_certificate.check(proof, path)["l_c"] == document["l_c"]
+    wrong = nudged(kind, 1e-12)
+    assert package.certify(wrong).l_c > Fraction(document["l_c"])
+    package.write(path, wrong)
+    proof.write_text(json.dumps({**document, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}))
+    with pytest.raises(ValueError, match=r"^(?!sha256)\w+: "):
+        check_certificate.check(proof, path)

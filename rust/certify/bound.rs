@@ -62,14 +62,14 @@ pub enum Decider {
 /// ```
 ///
 /// # Errors
-/// [`Error::SharpBend`] and [`Error::ClosePair`] where (T3) fails, [`Error::SelfCrossing`]
-/// where it fails for a curve that crosses itself.
+/// [`Error::SharpBend`] and [`Error::ClosePair`] where (T3) fails, [`Error::SelfCrossing`] where it
+/// fails for a curve that crosses itself.
 pub fn certify(curve: &Curve) -> Result<Bound> {
     let vertices: Vec<_> = curve.vertices().iter().map(|v| exactly(*v)).collect();
     certify_boxes(curve, &vertices)
 }
 
-/// The same for every polygon whose vertices lie in boxes, those of the curve among them.
+/// The same for all polygons whose vertices lie in boxes; the curve is one of them.
 ///
 /// # Errors
 /// As those of [`certify`].
@@ -116,15 +116,17 @@ struct Component {
 impl Component {
     /// That of these vertices, the first of which is the curve's vertex `first`.
     fn new(v: &[Point], first: usize) -> Self {
-        let n = v.len();
+        let (n, zero) = (v.len(), Interval::from(0.));
         let along: Vec<_> = (0..n).map(|i| from_to(v[i], v[(i + 1) % n])).collect();
         let edges: Vec<_> = along.iter().map(|e| length(*e)).collect();
         let bends: Vec<_> = (0..n)
             .map(|i| {
                 let before = (i + n - 1) % n;
                 let (e, f) = (along[before], along[i]);
-                let tan = length(cross(e, f)) / (edges[before] * edges[i] + dot(e, f));
-                (half(edges[before].min(edges[i])), tan.max(Interval::from(0.)))
+                // Neither the divisor nor the tangent is negative.
+                let ahead = (edges[before] * edges[i] + dot(e, f)).max(zero);
+                let tan = (length(cross(e, f)) / ahead).max(zero);
+                (half(edges[before].min(edges[i])), tan)
             })
             .collect();
         let (mut min_rad, mut sharpest) = (f64::INFINITY, first);
@@ -135,7 +137,7 @@ impl Component {
             }
         }
         let min_rad = min_rad.max(0.); // where the edges may fold back, so that tan has no bound
-        let longest = edges.iter().copied().fold(Interval::from(0.), Interval::max);
+        let longest = edges.iter().copied().fold(zero, Interval::max);
         Self { edges, bends, longest, min_rad, sharpest }
     }
 
@@ -222,7 +224,7 @@ fn sum(terms: &[Interval]) -> Interval {
     }
 }
 
-/// Half of a number, which is exact but where it underflows, and there no edge is so short.
+/// Half of a number; exact, since a `Curve` has no edge so short that it would underflow.
 fn half(x: Interval) -> Interval {
     Interval::new(0.5 * x.low(), 0.5 * x.high())
 }

@@ -6,7 +6,6 @@ import shlex
 import sys
 from contextlib import nullcontext
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -62,27 +61,34 @@ def command(
         raise click.UsageError("give --json or -o FOLDER, not both")
     if output:
         places.make_folder(output)
-    maker = _Maker(output, force)
+    sys.exit(_certified(given, close, _Maker(output, force), as_json, shown))
+
+
+def _certified(
+    given: tuple[str, ...], close: "Close | None", maker: "_Maker", as_json: bool, shown: options.Shown
+) -> int:
+    """Certify curves, in a table or as documents; return the exit code."""
     with nullcontext() if as_json else shown.table() as table:
 
         def certify(source: "Source") -> None:
             curve, certificate = _proven(source)
             for doubt in curve.doubts():
                 shown.tell(doubt)
-            file = maker.written(source, curve, certificate) if output else str(source)
             if table:
+                file = maker.written(source, curve, certificate) if maker.folder else str(source)
                 table.row(row(source.name, file, certificate))
             else:
                 click.echo(json.dumps(maker.document(source, curve, certificate)[1]))
 
-        code = each(given, close, certify)
-    sys.exit(code)
+        return each(given, close, certify)
 
 
 def _checked(certificate: str, file: str) -> int:
     """Have a certificate checked by what knows nothing of its making; return the exit code."""
+    from sono.check_certificate import check
+
     try:
-        bound = import_module("sono.check_certificate").check(certificate, file)["l_c"]
+        bound = check(certificate, file)["l_c"]
     except OSError as error:
         options.complain(f"{error.filename}: cannot be read: {error.strerror}")
     except ValueError as error:
