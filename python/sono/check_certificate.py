@@ -205,7 +205,7 @@ def prove_thickness(loops: list[Loop], four_r2: int, units: int) -> None:
 
     def fail(what: str, most: int) -> None:
         r, bound = (shown(Fraction(isqrt(value), 2 * units)) for value in (four_r2, most))
-        raise RefusedError(f"r: {what}: R is {r}, and would have to be {bound}")
+        raise RefusedError(f"r: {what}: R = {r} against {bound}")
 
     longest = max(loop.longest for loop in loops)
     if four_r2 <= 2 * longest:

@@ -1,4 +1,4 @@
-"""What knot or link a curve is, by name.
+"""What knot or link a curve is, by name, and whether two are the same.
 
 May import `curve`, `invariants` and `records`.
 """
