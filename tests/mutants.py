@@ -105,7 +105,8 @@ def unnoticed_in_rust(folder: Path) -> Iterator[str]:
         )
         if done.returncode != 0 and (number == 0 or b"could not compile" in done.stderr):
             raise SystemExit(done.stderr.decode() + done.stdout.decode())
-        print("noticed" if done.returncode else "unnoticed", place, sep="\t", flush=True)
+        if number:
+            print("noticed" if done.returncode else "unnoticed", place, sep="\t", flush=True)
         if number and done.returncode == 0:
             yield place
 
