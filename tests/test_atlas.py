@@ -161,3 +161,12 @@ def test_files_are_taken_in(folder: Path, sono: Sono) -> None:
     formats.write(folder / "3_1.mirror.txt", mirrored)
     result = sono("atlas", "3_1.mirror.txt", "--folder", "mine", "--update")
     assert (result.exit_code, "3_1.mirror.txt: is of another knot type" in result.stderr) == (1, True)
+
+
+def test_links_of_a_thousand_crossings_are_told_by_linking_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sono.invariants.crossings.MOST_CROSSINGS", 10)
+    assert confirmed_type("T(4,8)", starts.start("T(4,8)", 1), "link") == "linking"
+    with pytest.raises(ValueError, match="link: is of another knot type"):
+        confirmed_type("T(4,8)", starts.start("T(4,12)"), "link")
+    with pytest.raises(ValueError, match="its type cannot be told"):
+        confirmed_type("T(4,9)", starts.start("T(4,9)"), "knot")

@@ -19,7 +19,8 @@ from sono import starts
 from sono.curve import Components, forces, measure
 from sono.formats import FormatError
 from sono.formats.ropefile import TIGHT, Searched
-from sono.invariants import fingerprint
+from sono.invariants import TooEntangledError, fingerprint
+from sono.invariants.crossings import crossings, linking_matrix
 from sono.jobs.curvefiles import KEPT_RESIDUAL, rope_in
 from sono.jobs.family import Family
 from sono.naming import identify
@@ -32,6 +33,9 @@ from sono.tightening import Tight, polished
 
 FINER_EDGES = (0.1, 0.03)
 """Edge lengths at which L_c is given once more, in radii, the first where it is at most what is published."""
+
+VIEW = np.array([0.3, 0.5, 0.81])
+"""Where links are looked at from, in which symmetric ones have nothing in line."""
 
 SHORTER = 1e-7
 """A rope is shorter than another if its L_a is by so much, relatively."""
@@ -102,14 +106,14 @@ class Atlas:
 
 
 def confirmed_type(knot: str, curve: Components, file: str) -> str:
-    """Return how it is known that a curve is the knot of this name: "proven", "invariants" or "fingerprint".
+    """Return how it is known that a curve is the knot of this name: "proven", "invariants" or less.
 
-    The last is for torus types with many crossings: see `invariants.fingerprint`. Raises `ValueError` if the
-    curve is another knot.
+    Torus types are told by their "fingerprint", see `invariants`, or, where links have too many crossings for
+    that, by "linking" numbers. Raises `ValueError` if the curve is another knot.
     """
     family = place(knot).family
     if family == "torus":
-        right, by = fingerprint(curve) == fingerprint(starts.start(knot)), "fingerprint"
+        right, by = _like_torus(curve, starts.start(knot))
     else:
         found = identify(curve)
         names = (knot,) if family == "knots" else identify(starts.start(knot)).names
@@ -117,6 +121,17 @@ def confirmed_type(knot: str, curve: Components, file: str) -> str:
     if not right:
         raise ValueError(f"{file}: is of another knot type than {knot}; remove it or name it otherwise")
     return by
+
+
+def _like_torus(curve: Components, start: Components) -> tuple[bool, str]:
+    """Tell whether a curve has the invariants of a torus type, and which. Raises `TooEntangledError`."""
+    try:
+        return fingerprint(curve) == fingerprint(start), "fingerprint"
+    except TooEntangledError:
+        if len(start) == 1 or len(start) != len(curve):
+            raise
+        one, other = (linking_matrix(crossings(link, VIEW)) for link in (curve, start))
+        return bool((one == other).all()), "linking"
 
 
 def _fit(file: str, watch: Watch) -> tuple[Components, Searched | None]:
