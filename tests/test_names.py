@@ -91,7 +91,7 @@ def test_variants_differ_but_not_in_type() -> None:
     assert len({curve[0].tobytes() for curve in tabled}) == len(tabled)
     assert len({fingerprint(curve) for curve in tabled}) == 1
     with pytest.raises(ValueError, match="has no planar diagram"):
-        start("T(2,4)", -1)
+        start("chain3", -1)
 
 
 def test_confused_names_are_those_of_knotinfo() -> None:

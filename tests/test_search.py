@@ -202,7 +202,8 @@ def test_a_curve_is_searched_by_its_scrambles(knot: str) -> None:
     assert len(start[0]) != len(curve[0])
     assert fingerprint(start) == unnamed.type
     assert attempt(unnamed, 1).curve
-    assert Source.of(curve, "T(2,4)").name is None
+    assert Source.of(curve, "chain3").name is None
+    assert Source.of(curve, "T(2,4)").name == "T(2,4)"
     assert Source.of(curve, "m7_4").name == "m7_4"
 
 
