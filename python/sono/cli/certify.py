@@ -118,19 +118,16 @@ def _proven(source: "Source") -> "tuple[VertexFile, Certificate]":
 
 def _rope(source: "Source") -> "VertexFile":
     """Return the atlas's rope of a knot. Raises `FormatError`."""
-    import numpy as np
-
     import sono
-    from sono.formats import FormatError, VertexFile
+    from sono.formats import FormatError
+    from sono.jobs.sources import as_file
 
     try:
         curve = sono.start(source.given, known=True)
     except ValueError as error:
         cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one to be certified"
         raise FormatError(f"{source}: {error}; {cure}") from error
-    lines = [np.arange(len(component)) + 1 for component in curve]
-    title = f"{source.name}, the rope of the atlas"
-    return VertexFile(source.given, list(curve), lines, comments=[title])
+    return as_file(source.given, list(curve), f"{source.name}, the rope of the atlas")
 
 
 def row(name: str, file: str, certificate: "Certificate") -> tables.Row:

@@ -18,7 +18,7 @@ import numpy as np
 
 from sono.formats.boxes import Box
 from sono.formats.molecules import Atom, Model, curves
-from sono.formats.vertices import FormatError, Raw, numbers, shown
+from sono.formats.vertices import FormatError, Raw, numbers, place, shown
 
 _ROW = r"[ \d]{5}.{10}[ \d]{5}(?: *-?\d+\.\d+){3}"
 _HEAD = re.compile(rf".*\n[ \t]*\d+[ \t]*\n{_ROW}")
@@ -48,18 +48,11 @@ def read(text: str, name: str) -> list[Raw]:
 
 
 def _atom(line: str, name: str, number: int) -> Atom:
-    points = [place for place, sign in enumerate(line) if sign == "." and place >= 20]
+    points = [column for column, sign in enumerate(line) if sign == "." and column >= 20]
     width = points[1] - points[0] if len(points) > 2 else 8  # more decimals have wider columns
     cells = [line[at : at + width].strip() for at in range(20, 20 + 3 * width, width)]
-    try:
-        x, y, z = numbers(cells)
-    except ValueError:
-        raise FormatError.at(
-            name, number, f"{shown(' '.join(cells))} are no three numbers; x y z should stand from column 21"
-        ) from None
-    return Atom(
-        False, line[10:15].strip(), "", line[5:10].strip(), "", 0, line[:5].strip(), (x, y, z), number
-    )
+    at = place(cells, name, number, "from column 21")
+    return Atom(False, line[10:15].strip(), "", line[5:10].strip(), "", 0, line[:5].strip(), at, number)
 
 
 def _box(line: str, name: str, number: int) -> Box | None:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from sono.formats.molecules import Atom, Bonds, Model, curves
-from sono.formats.vertices import FormatError, Raw, numbers, shown
+from sono.formats.vertices import FormatError, Raw, place
 
 Site = tuple[str, str, str]
 """The chain, the residue's number and the name of an atom."""
@@ -50,23 +50,13 @@ def read(text: str, name: str) -> list[Raw]:
     parts: dict[str, int] = {}
     for number, row in enumerate(zip(*(_column(table, *items) for items in ATOM), strict=True), line):
         model, group, atom, other, residue, chain, part, at, inserted, *cells = row
-        place = _place(cells, name, number)
+        xyz = place(cells, name, number, "here")
         part_number = parts.setdefault(part, len(parts))
         models.setdefault(model or "1", []).append(
-            Atom(group == "HETATM", atom, other, residue, chain, part_number, at + inserted, place, number)
+            Atom(group == "HETATM", atom, other, residue, chain, part_number, at + inserted, xyz, number)
         )
     links = list(_links(bonds))
     return curves([Model(key, atoms, _bonds(links, atoms)) for key, atoms in models.items()], name)
-
-
-def _place(cells: Sequence[str], name: str, line: int) -> tuple[float, float, float]:
-    try:
-        x, y, z = numbers(cells)
-    except ValueError:
-        raise FormatError.at(
-            name, line, f"{shown(' '.join(cells))} are no three numbers; x y z should stand here"
-        ) from None
-    return x, y, z
 
 
 def _tables(text: str, name: str) -> tuple[Table, Table, int]:

@@ -199,6 +199,16 @@ def numbers(cells: Iterable[str]) -> list[float]:
         return [float(_number(cell)) for cell in cells]
 
 
+def place(cells: Sequence[str], name: str, line: int, where: str) -> tuple[float, float, float]:
+    """Read the x, y and z of an atom, which should stand `where`. Raises `FormatError`."""
+    try:
+        x, y, z = numbers(cells)
+    except ValueError:
+        message = f"{shown(' '.join(cells))} are no three numbers; x y z should stand {where}"
+        raise FormatError.at(name, line, message) from None
+    return x, y, z
+
+
 def _number(cell: str) -> str:
     fortran = _FORTRAN.fullmatch(cell.strip())
     return "e".join(part for part in fortran.groups() if part is not None) if fortran else cell

@@ -84,7 +84,8 @@ class Atlas:
             curve, finer = _finer(knot, curve, watch)
             type = confirmed_type(knot, curve, file)
             origin = (searched.variant, searched.seed) if searched else (None, None)
-            residual = forces([component / measure(curve).r_s for component in curve]).residual
+            r_s = measure(curve).r_s
+            residual = forces([component / r_s for component in curve]).residual
             row = {
                 **_measured(knot, curve),
                 "residual": residual,

@@ -10,6 +10,7 @@ from typing import Self
 import numpy as np
 
 from sono import formats, starts
+from sono.curve import Components
 from sono.formats import Close, FormatError, Raw, VertexFile
 
 _OF_FILES = "./\\"
@@ -127,5 +128,10 @@ def _drawn(knot: str) -> VertexFile:
         curve = starts.drawn(knot)
     except ValueError as error:
         raise FormatError(f"{knot}: no such file, nor a knot: {error}") from error
+    return as_file(knot, curve, knot)
+
+
+def as_file(name: str, curve: Components, title: str) -> VertexFile:
+    """Return a curve of no file as one that was read, its title a comment, and its vertices a line each."""
     lines = [np.arange(len(component)) + 1 for component in curve]
-    return VertexFile(knot, list(curve), lines, comments=[knot])
+    return VertexFile(name, list(curve), lines, comments=[title])

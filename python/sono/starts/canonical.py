@@ -28,7 +28,6 @@ LONGEST = 1000
 """Letters of a name that is looked at."""
 
 
-@cache
 def canonical(name: str) -> str:
     """Return one name for all names of a knot or link, for its mirror image, and for all orientations.
 
@@ -39,17 +38,29 @@ def canonical(name: str) -> str:
     >>> [canonical(name) for name in ("L6a4{0,1}", "P(-2,3,7)", "3_1#0_1", "1 -2 1 -2", "foo")]
     ['L6a4', '12n_242', '3_1', '4_1', 'foo']
     """
+    return handed(name)[0]
+
+
+@cache
+def handed(name: str) -> tuple[str, bool]:
+    """Return the one name, and whether what has this name is the mirror image of what that draws.
+
+    >>> handed("m3_1#4_1"), handed("square"), handed("T(2,-99)")
+    (('3_1#4_1', True), ('3_1#m3_1', False), ('T(2,99)', True))
+    """
     if len(name) > LONGEST:
-        return name
+        return name, False
     parts = [one for part in summands(name) for one in _parts(part) if one.name != "0_1"]
     if not parts:
-        return "0_1"
+        return "0_1", False
     if [part.name for part in parts] == [HOPF, HOPF]:
-        return "chain3"
+        return "chain3", False
     either = [
         sorted((_unhanded(part, turned, len(parts)) for part in parts), key=_order) for turned in (0, 1)
     ]
-    return min(("#".join(map(str, each)) for each in either), key=lambda text: (text.count("m"), text))
+    names = ["#".join(map(str, each)) for each in either]
+    turned = min((0, 1), key=lambda turned: (names[turned].count("m"), names[turned]))
+    return names[turned], bool(turned)
 
 
 def _parts(part: Part) -> list[Part]:

@@ -7,8 +7,6 @@ They are tight at R_s = 1, on edges of about 0.2 radii, and what a rope of any n
 (1, True, True)
 """
 
-import re
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -16,20 +14,18 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 
 from sono.curve import Components
-from sono.naming.known import is_amphichiral
 from sono.starts import archive
+from sono.starts.canonical import handed
 from sono.starts.drawing import mirror
 from sono.starts.links import link_row, oriented_like
-from sono.starts.names import start
-from sono.starts.spelling import Part, spelled, summands
+from sono.starts.names import TORUS, matched, start
+from sono.starts.spelling import spelled, summands
 from sono.starts.tabled import NoTableError, tabled_name
 
 FAMILIES = ("knots", "links", "composites", "torus")
 """Prime knots and prime links by their names in the tables, connected sums, and torus knots and links."""
 
 FOLDER: Traversable = resources.files("sono").joinpath("data", "atlas")
-
-_TORUS = re.compile(r"T[(\[{](-?\d{1,9}),(-?\d{1,9})[)\]}]", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -50,10 +46,10 @@ def place(name: str) -> Place:
     """Return the place of a knot or link, by a name in any spelling."""
     parts = summands(name)
     if len(parts) > 1:
-        return Place("composites", *_sum(parts))
+        return Place("composites", *handed(name))
     plain, mirrored = parts[0].name, parts[0].mirrored
-    if torus := _TORUS.fullmatch(re.sub(r"\s", "", plain)):
-        p, q = map(int, torus.groups())
+    if torus := matched(plain, [TORUS]):
+        p, q = map(int, torus[1].groups())
         return Place("torus", f"T({min(abs(p), abs(q))},{max(abs(p), abs(q))})", mirrored != (p * q < 0))
     if row := link_row(spelled(plain)):
         return Place("links", row["link"].split("{")[0], mirrored)
@@ -96,20 +92,3 @@ def ropes(family: str) -> dict[str, bytes]:
     """Return the ropes of a family as the package has them, by their names."""
     file = FOLDER.joinpath(f"{family}.zip")
     return archive.read(file.read_bytes()) if file.is_file() else {}
-
-
-def _sum(parts: Sequence[Part]) -> tuple[str, bool]:
-    """Return the name of a sum or of its mirror image as `canonical` has it, and whether it is that."""
-    ways = []
-    for mirrored in (False, True):
-        signs = []
-        for part in parts:
-            knot = tabled_name(part.name)
-            signs.append(Part(knot, part.mirrored != mirrored and not is_amphichiral(knot)))
-        name = "#".join(map(str, sorted(signs, key=lambda part: (_numbers(part.name), str(part)))))
-        ways.append((name.count("m"), name, mirrored))
-    return min(ways)[1:]
-
-
-def _numbers(name: str) -> list[int]:
-    return [int(number) for number in re.findall(r"\d+", name)]
