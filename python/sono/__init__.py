@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from sono.tightening import Settings as Settings
     from sono.tightening import Stopped as Stopped
     from sono.tightening import Tight as Tight
+    from sono.views import view as view
 
 _HOMES = {
     "CurveError": "sono._core",
@@ -77,6 +78,7 @@ _HOMES = {
     "start": "sono.calls",
     "tighten": "sono.calls",
     "verify": "sono.calls",
+    "view": "sono.views",
     "write": "sono.calls",
 }
 

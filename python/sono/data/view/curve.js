@@ -1,0 +1,142 @@
+// A curve as it came: vertices at R = 1 and what is known of each; and what is reckoned from them.
+
+/** Decode base64 of little-endian numbers. */
+function numbers(text, Kind) {
+  return new Kind(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+}
+
+const add = (a, b, t = 1) => [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
+const sub = (a, b) => add(a, b, -1);
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const scaled = (a, t) => [t * a[0], t * a[1], t * a[2]];
+const unit = (a) => scaled(a, 1 / (Math.hypot(...a) || 1));
+const mix = (a, b, t) => a.map((x, k) => x + t * (b[k] - x));
+
+/** Any unit vector across t. */
+function across(t) {
+  const axis = Math.abs(t[0]) < 0.6 ? [1, 0, 0] : [0, 1, 0];
+  return unit(cross(t, axis));
+}
+
+/** Return what of `u` is across `t`, as a unit vector. */
+const turnedAcross = (u, t) => unit(add(u, t, -dot(u, t)));
+
+class Curve {
+  constructor(given) {
+    Object.assign(this, given);
+    this.vertices = numbers(given.vertices, Float32Array);
+    this.curvature = numbers(given.curvature, Float32Array);
+    this.pairs = numbers(given.pairs, Uint32Array);
+    this.pressing = numbers(given.pressing, Float32Array);
+    this.n = this.vertices.length / 3;
+    this.component = this.sizes.flatMap((size, c) => Array(size).fill(c));
+    this.first = this.sizes.map((_, c) => this.sizes.slice(0, c).reduce((a, b) => a + b, 0));
+    this.measureAlong();
+    this.sumForces();
+    this.centre = this.mean();
+    this.extent = 1 + Math.max(...this.sizes.map((_, c) => this.reach(c)));
+  }
+
+  vertex(i) {
+    return [...this.vertices.subarray(3 * i, 3 * i + 3)];
+  }
+
+  /** Return the vertex k places after i, or before it, on the same component. */
+  along(i, k) {
+    const first = this.first[this.component[i]], size = this.sizes[this.component[i]];
+    return first + ((((i - first + k) % size) + size) % size);
+  }
+
+  /** Reckon the arclength of each vertex, through all components, and where each component ends. */
+  measureAlong() {
+    this.arclength = new Float32Array(this.n);
+    this.edge = new Float32Array(this.n);
+    this.ends = [];
+    let s = 0;
+    for (let i = 0; i < this.n; i++) {
+      this.arclength[i] = s;
+      this.edge[i] = Math.hypot(...sub(this.vertex(this.along(i, 1)), this.vertex(i)));
+      s += this.edge[i];
+      if (this.component[i + 1] !== this.component[i]) this.ends.push(s);
+    }
+    this.length = s;
+  }
+
+  /** Sum up what presses on each vertex, over the length of rope that the vertex stands for. */
+  sumForces() {
+    this.force = new Float32Array(this.n);
+    this.pressing.forEach((force, k) => {
+      for (const i of [this.pairs[2 * k], this.pairs[2 * k + 1]]) {
+        this.force[i] += (2 * force) / (this.edge[i] + this.edge[this.along(i, -1)]);
+      }
+    });
+    this.strongest = this.pressing.reduce((a, b) => Math.max(a, b), 0);
+  }
+
+  mean() {
+    let sum = [0, 0, 0];
+    for (let i = 0; i < this.n; i++) sum = add(sum, this.vertex(i));
+    return scaled(sum, 1 / this.n);
+  }
+
+  reach(c) {
+    let far = 0;
+    for (let i = this.first[c]; i < this.first[c] + this.sizes[c]; i++) {
+      far = Math.max(far, Math.hypot(...sub(this.vertex(i), this.centre)));
+    }
+    return far;
+  }
+
+  /** Return the vertex at an arclength, by halving. */
+  at(s) {
+    let low = 0, high = this.n;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (this.arclength[middle] <= s) low = middle;
+      else high = middle;
+    }
+    return s - this.arclength[low] > this.edge[low] / 2 ? this.along(low, 1) : low;
+  }
+
+  /**
+   * Return the rings of the tube, a list a component: centre, a frame across the axis, and the vertex.
+   *
+   * The axis is smooth: at each vertex a parabola from the middle of one edge to that of the next, which it
+   * touches there as the inscribed arc does.
+   */
+  rings() {
+    if (!this.made) this.made = this.sizes.map((_, c) => closedUp(this.axis(c)));
+    return this.made;
+  }
+
+  axis(c) {
+    const pieces = Math.max(1, Math.min(24, Math.round(3000 / this.n)));
+    const axis = [];
+    for (let i = this.first[c]; i < this.first[c] + this.sizes[c]; i++) {
+      const here = this.vertex(i);
+      const before = scaled(add(this.vertex(this.along(i, -1)), here), 0.5);
+      const after = scaled(add(this.vertex(this.along(i, 1)), here), 0.5);
+      for (let k = 0; k < pieces; k++) {
+        const t = k / pieces, one = mix(before, here, t), two = mix(here, after, t);
+        const tangent = unit(sub(two, one));
+        axis.push({ centre: mix(one, two, t), tangent, vertex: i, place: i + t - 0.5 });
+      }
+    }
+    return axis;
+  }
+}
+
+/** Give rings frames that turn as little as they can, and the rest evenly, so that the last meets the first. */
+function closedUp(axis) {
+  let u = across(axis[0].tangent);
+  for (const ring of axis) ring.u = u = turnedAcross(u, ring.tangent);
+  const { tangent, u: start } = axis[0], end = turnedAcross(u, tangent);
+  const missing = Math.atan2(dot(cross(end, start), tangent), dot(end, start));
+  axis.forEach((ring, k) => {
+    const angle = (missing * k) / axis.length, v = cross(ring.tangent, ring.u);
+    ring.u = add(scaled(ring.u, Math.cos(angle)), v, Math.sin(angle));
+    ring.v = cross(ring.tangent, ring.u);
+  });
+  return axis;
+}
