@@ -7,7 +7,7 @@ from typing import cast
 
 from sono.calls import Rope, start
 from sono.curve import CurveLike
-from sono.figures.view import View, page, titled
+from sono.figures.view import View, shown
 
 
 def view(*ropes: Rope | Mapping[str, Rope], title: str | None = None) -> View:
@@ -26,7 +26,7 @@ def view(*ropes: Rope | Mapping[str, Rope], title: str | None = None) -> View:
     pairs = [pair for rope in ropes for pair in _named(rope)]
     if not pairs:
         raise ValueError("give a rope to be shown")
-    return View(page(pairs, titled([name for name, _ in pairs]) if title is None else title))
+    return shown(pairs, title)
 
 
 def _named(rope: Rope | Mapping[str, Rope]) -> Iterator[tuple[str, CurveLike]]:

@@ -1,6 +1,6 @@
 """The command line: one module a command, imported when it is used.
 
-May import `certificates`, `check_certificate`, `curve`, `formats`, `invariants`, `jobs`, `naming`,
+May import `certificates`, `check_certificate`, `curve`, `figures`, `formats`, `invariants`, `jobs`, `naming`,
 `patience`, `printing`, `starts`, `tables` and `tightening`.
 """
 
@@ -28,6 +28,7 @@ COMMANDS = {
     "start": "Write the starting conformation of a knot.",
     "tighten": "Tighten curves and write the paper's table.",
     "verify": "Tell whether two curves are the same knot.",
+    "view": "Show ropes in the round, on a page for a browser.",
 }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from sono.curve import Components, Floats
 
-SAMPLES = 90
+SAMPLES = 240
 """Points of each component by which curves are laid on each other."""
 
 
@@ -49,7 +49,7 @@ def _sampled(curve: Components) -> Floats:
         at = np.linspace(0, along[-1], SAMPLES, endpoint=False)
         parts.append(np.column_stack([np.interp(at, along, closed[:, k]) for k in range(3)]))
     points = np.array(parts)
-    return points - points.mean(axis=(0, 1))
+    return np.asarray(points - points.mean(axis=(0, 1)))
 
 
 def _laid(points: Floats, on: Floats) -> Floats:

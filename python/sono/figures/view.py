@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.curve import Components, CurveLike, Curve, Floats, Measures, as_components, forces, measure
+from sono.curve import Components, Curve, CurveLike, Floats, Measures, as_components, forces, measure
 from sono.figures.turning import turned
 from sono.invariants import TooEntangledError
 from sono.naming import identify
@@ -54,6 +54,11 @@ class View:
         """Show the page in a frame that can reach nothing else."""
         style = "width:100%;height:560px;border:0"
         return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{escape(self.html)}"></iframe>'
+
+
+def shown(curves: Sequence[tuple[str, CurveLike]], title: str | None = None) -> View:
+    """Return the page of curves to be shown or saved; see `page`, whose errors it raises."""
+    return View(page(curves, titled([name for name, _ in curves]) if title is None else title))
 
 
 def page(curves: Sequence[tuple[str, CurveLike]], title: str) -> str:
@@ -133,7 +138,7 @@ def _type(rope: Components) -> str:
         found = identify(rope)
     except TooEntangledError:
         return "too entangled to be identified"
-    return found.name or f"type {found.known}"
+    return found.name or found.known
 
 
 def _rows(measures: Measures) -> list[tuple[str, str]]:

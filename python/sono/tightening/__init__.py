@@ -1,6 +1,6 @@
 """From any closed curve to a tight one: the plan of a run, and the loop that runs it.
 
-May import `curve`, `invariants`, `patience` and `records`.
+May import `curve`, `figures`, `invariants`, `patience` and `records`.
 """
 
 from sono.tightening.once import polished

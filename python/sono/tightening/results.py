@@ -1,12 +1,15 @@
 """What a tightening gives: the rope, and before that where it stands or why it stopped."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sono.curve import Curve, Forces, Measures
 from sono.records import Record
 from sono.tightening.engines import Status
 from sono.tightening.plan import Stage
+
+if TYPE_CHECKING:
+    from sono.figures.view import View
 
 
 class Stopped(Exception):  # noqa: N818 - no error, a request that was followed
@@ -60,6 +63,12 @@ class Tight(Record):
         """Return plain values: what the rope measures first, among the other fields."""
         values = super().to_dict()
         return self.measures.to_dict() | {key: values[key] for key in values if key != "measures"}
+
+    def view(self) -> "View":
+        """Show the rope in the round, in a notebook, or on a page to be saved; see `sono.view`."""
+        from sono.figures.view import shown  # here, as few need it
+
+        return shown([("", self.curve)])
 
 
 @dataclass(frozen=True)

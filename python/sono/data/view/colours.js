@@ -20,13 +20,19 @@ function tint(scale, t) {
 const gradient = (scale) => `linear-gradient(to right, ${scale.map(css).join(", ")})`;
 const componentColour = (c) => COMPONENTS[c % COMPONENTS.length];
 
+/** Return what one in twenty of the values above 0 exceeds, so that a few peaks do not darken all others. */
+function usualMost(values) {
+  const above = values.filter((x) => x > 0).sort();
+  return above[Math.floor(0.95 * above.length)] ?? 0;
+}
+
 /** What the colours of a rope may tell: a scale, the value of a vertex, and the values at its ends. */
 const DYES = {
   component: { label: "Component" },
   curvature: { label: "Curvature", of: "curvature × R", scale: VIRIDIS, value: (c, i) => c.curvature[i], most: () => 1 },
   force: {
     label: "Contact force", of: "contact force / tension, per R", scale: PLASMA, value: (c, i) => c.force[i],
-    most: (c) => c.force.reduce((a, b) => Math.max(a, b), 0),
+    most: (c) => usualMost(c.force), above: "≥ ",
   },
   arclength: {
     label: "Arclength", of: "arclength / R, each component", scale: TWILIGHT,

@@ -11,14 +11,14 @@ vec4 shown(vec3 p) { return vec4(lens.xy * p.xy, lens.z * p.z + lens.w, -p.z); }
 
 const LIT = `
 uniform vec3 back; uniform vec2 depth; uniform float alpha; out vec4 pixel;
-vec4 lit(vec3 colour, vec3 n, vec3 p) {
+vec4 lit(vec3 colour, vec3 n, vec3 p, float cover) {
   vec3 eye = normalize(-p), sun = normalize(vec3(-0.5, 0.75, 0.8));
   float facing = max(dot(n, eye), 0.0);
   float light = 0.30 + 0.18 * n.y + 0.62 * max(dot(n, sun), 0.0) + 0.12 * facing;
   float shine = 0.22 * pow(max(dot(n, normalize(sun + eye)), 0.0), 40.0);
   vec3 all = colour * light * mix(0.35, 1.0, smoothstep(0.0, 0.42, facing)) + shine;
-  float haze = 0.45 * smoothstep(depth.x, depth.y, -p.z);
-  return vec4(pow(mix(all, back, haze), vec3(1.0 / 2.2)), alpha);
+  float haze = 0.3 * smoothstep(depth.x, depth.y, -p.z);
+  return vec4(pow(mix(all, back, haze), vec3(1.0 / 2.2)), alpha * cover);
 }
 `;
 
@@ -35,7 +35,7 @@ void main() {
 precision highp float;
 in vec3 dye, normal, place;
 ${LIT}
-void main() { pixel = lit(dye, normalize(normal), place); }`];
+void main() { pixel = lit(dye, normalize(normal), place, 1.0); }`];
 
 const BALL = [`${SEEN}
 in vec2 at; in vec3 c0, dye0;
@@ -45,7 +45,7 @@ void main() {
   middle = seen(c0);
   float far = length(middle);
   vec3 to = middle / far, x = normalize(cross(to, vec3(0.0, 1.0, 0.1))), y = cross(x, to);
-  float half_width = far * radius / sqrt(max(far * far - radius * radius, 1e-6));
+  float half_width = 1.02 * far * radius / sqrt(max(far * far - radius * radius, 1e-6));
   place = middle + half_width * (at.x * x + at.y * y);
   gl_Position = shown(place);
 }`, `${SEEN}
@@ -54,11 +54,12 @@ ${LIT}
 void main() {
   vec3 sight = normalize(place);
   float ahead = dot(middle, sight), under = radius * radius - dot(middle, middle) + ahead * ahead;
-  if (under < 0.0) discard;
-  vec3 hit = (ahead - sqrt(under)) * sight;
+  float cover = clamp(0.5 + under / fwidth(under), 0.0, 1.0); // of the pixel, for smooth edges
+  if (cover == 0.0) discard;
+  vec3 hit = (ahead - sqrt(max(under, 0.0))) * sight;
   vec4 position = shown(hit);
   gl_FragDepth = 0.5 + 0.5 * position.z / position.w;
-  pixel = lit(dye, (hit - middle) / radius, hit);
+  pixel = lit(dye, normalize(hit - middle), hit, cover);
 }`];
 
 const linear = (colour) => colour.map((x) => x ** 2.2);
@@ -105,7 +106,7 @@ function sleeve(curve, i, colour) {
 
 class Painter {
   constructor(canvas) {
-    const gl = (this.gl = canvas.getContext("webgl2", { antialias: true }));
+    const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false }));
     if (!gl) throw new Error("WebGL2 is not to be had");
     this.strip = this.buffer(new Float32Array(Array.from({ length: 2 * SIDES + 2 }, (_, k) => [k % 2, (2 * Math.PI * (k >> 1)) / SIDES]).flat()));
     this.square = this.buffer(new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]));
@@ -154,7 +155,9 @@ class Painter {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (scene.beads) {
       const balls = this.onCard("balls", [curve, colours], () => laidOut(colours.map((colour, i) => rod(curve.vertex(i), curve.vertex(i), 1, colour))));
+      gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
       this.pass(this.balls, this.square, 4, balls, scene, scene.radius);
+      gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
     }
     if (!scene.beads || scene.thin) {
       const rope = this.onCard("rope", [curve, colours], () => laidOut(ropeRods(curve, colours)));

@@ -85,14 +85,14 @@ function row(label, value) {
 
 function dye(name) {
   state.dye = $("colour").value = name;
-  const curve = shown(), { label, of, scale, most } = DYES[name];
+  const curve = shown(), { label, of, scale, most, above = "" } = DYES[name];
   colours = dyed(curve, name);
   $("of").textContent = of ?? (curve.sizes.length > 1 ? label : "");
   $("scale").style.background = scale ? gradient(scale) : "none";
   $("scale").hidden = !scale;
   const top = scale && Math.max(...curve.sizes.map((_, c) => most(curve, c)));
   $("least").textContent = scale ? "0" : "";
-  $("most").textContent = scale ? +top.toPrecision(3) : "";
+  $("most").textContent = scale ? above + +top.toPrecision(3) : "";
   listComponents(curve, !scale && curve.sizes.length > 1);
   redraw();
 }
@@ -126,25 +126,25 @@ function theme(name) {
 function mark(vertices) {
   if (vertices.length === state.marks.length && vertices.every((i, k) => i === state.marks[k])) return;
   state.marks = vertices;
-  $("told").replaceChildren(...vertices.flatMap((i, k) => told(i, k ? "other" : "mark")), ...between(vertices));
+  $("told").hidden = !vertices.length;
+  $("told").tBodies[0].replaceChildren(...vertices.map(told));
+  $("told").tFoot.rows[0].cells[0].textContent = between(vertices);
   redraw();
 }
 
-function told(i, kind) {
-  const curve = shown(), c = curve.component[i], dot = document.createElement("b"), text = document.createElement("span");
-  dot.className = kind;
-  dot.textContent = "● ";
-  const s = curve.arclength[i] - curve.arclength[curve.first[c]];
-  text.textContent = `vertex ${i - curve.first[c]} of component ${c}: s = ${s.toFixed(3)}, curvature ${curve.curvature[i].toFixed(3)}, force ${curve.force[i].toFixed(3)}   `;
-  return [dot, text];
+function told(i) {
+  const curve = shown(), c = curve.component[i], first = curve.first[c], line = document.createElement("tr");
+  const figures = [curve.arclength[i] - curve.arclength[first], curve.curvature[i], curve.force[i]];
+  for (const text of [`${c}:${i - first}`, ...figures.map((x) => x.toFixed(3))]) line.insertCell().textContent = text;
+  return line;
 }
 
 /** What two vertices have to do with each other. */
 function between([i, j]) {
-  if (j === undefined) return [];
+  if (j === undefined) return "";
   const curve = shown(), apart = Math.hypot(...sub(curve.vertex(i), curve.vertex(j)));
   const k = curve.pressing.findIndex((_, k) => [[i, j], [j, i]].some(([a, b]) => curve.pairs[2 * k] === a && curve.pairs[2 * k + 1] === b));
-  return [`${apart.toFixed(3)} apart${k < 0 ? "" : `, pressing with ${curve.pressing[k].toFixed(4)}`}`];
+  return `${apart.toFixed(3)} R apart${k < 0 ? "" : `, pressing with ${curve.pressing[k].toFixed(4)} of the tension`}`;
 }
 
 function pointAtRope(event) {
@@ -157,6 +157,11 @@ function pointAtRope(event) {
 function pointAtMap(event) {
   const box = $("map").getBoundingClientRect();
   mark(map.under(event.clientX - box.left, event.clientY - box.top));
+}
+
+/** A mouse that has left points at nothing; a finger that was lifted did point. */
+function leave(event) {
+  if (event.pointerType === "mouse") mark([]);
 }
 
 function stepOnMap(event) {
@@ -175,6 +180,7 @@ const fingers = new Map();
 function down(event) {
   stage.setPointerCapture(event.pointerId);
   fingers.set(event.pointerId, [event.clientX, event.clientY]);
+  pointAtRope(event);
 }
 
 function up(event) {
@@ -245,11 +251,11 @@ function listen() {
   $("help").onclick = KEYS["?"];
   $("colour").onchange = () => dye($("colour").value);
   $("which").oninput = () => show(+$("which").value);
-  Object.assign(stage, { onpointerdown: down, onpointermove: move, onpointerup: up, onpointercancel: up, onpointerleave: () => mark([]), oncontextmenu: (event) => event.preventDefault() });
+  Object.assign(stage, { onpointerdown: down, onpointermove: move, onpointerup: up, onpointercancel: up, onpointerleave: leave, oncontextmenu: (event) => event.preventDefault() });
   stage.addEventListener("wheel", wheel, { passive: false });
   stage.addEventListener("webglcontextlost", (event) => event.preventDefault());
   stage.addEventListener("webglcontextrestored", () => ((painter = painterOf(stage)), redraw()));
-  Object.assign($("map"), { onpointermove: pointAtMap, onpointerdown: pointAtMap, onpointerleave: () => mark([]), onkeydown: stepOnMap });
+  Object.assign($("map"), { onpointermove: pointAtMap, onpointerdown: pointAtMap, onpointerleave: leave, onkeydown: stepOnMap });
   addEventListener("keydown", press);
   new ResizeObserver(redraw).observe(stage);
   const night = matchMedia("(prefers-color-scheme: dark)");

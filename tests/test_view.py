@@ -1,0 +1,214 @@
+"""The page of a rope, without a browser: what is in it, and that nothing can break out of it."""
+
+import base64
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Sono
+from numpy.typing import NDArray
+
+import sono as package
+from sono.figures.turning import turned
+from sono.figures.view import WEAKEST, curvature, page, titled
+
+EVIL = "</script><script>alert(1)</script><img src=x onerror=alert(2)> $title ${data} & \"'"
+"""Whatever a file may be called, or say."""
+
+
+class Tags(HTMLParser):
+    """Collects the tags of a page, and the text of each script and title."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[tuple[str, str]] = []
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append((self.tags[-1][0] if self.tags else "", data))
+
+    @property
+    def data(self) -> list[dict[str, Any]]:
+        """The curves."""
+        at = next(k for k, (tag, _) in enumerate(self.texts) if tag == "script")
+        found: list[dict[str, Any]] = json.loads(self.texts[at][1])
+        return found
+
+
+def decoded(text: str, kind: str) -> NDArray[Any]:
+    return np.frombuffer(base64.b64decode(text, validate=True), kind)
+
+
+@pytest.fixture(scope="module")
+def borromean() -> str:
+    return page([("rings", package.start("Borromean", known=True))], "Rings")
+
+
+def test_a_page_needs_nothing_else(borromean: str) -> None:
+    assert not re.search(r"https?:|//[a-z]+\.[a-z]|@import|url\(|\bimport\b|fetch|XMLHttp", borromean)
+    for tag, attributes in Tags(borromean).tags:
+        assert "src" not in attributes
+        assert tag != "link" or attributes["href"] == "data:,"
+    assert "default-src 'none'" in borromean
+
+
+def test_the_data_are_the_rope(borromean: str) -> None:
+    curve = package.start("Borromean", known=True)
+    rope = [component / package.measure(curve).r_s for component in curve]
+    (data,) = Tags(borromean).data
+    assert data["sizes"] == list(map(len, curve))
+    np.testing.assert_allclose(
+        decoded(data["vertices"], "<f4").reshape(-1, 3), np.concatenate(rope), atol=3e-6
+    )
+    forces = package.forces(rope)
+    strong = forces.pressing > WEAKEST * forces.pressing.max()
+    assert 0 < strong.sum() <= len(strong)
+    np.testing.assert_array_equal(decoded(data["pairs"], "<u4").reshape(-1, 2), forces.contacts[strong])
+    np.testing.assert_allclose(decoded(data["pressing"], "<f4"), forces.pressing[strong], rtol=1e-5)
+    assert dict(data["rows"])["L_p"] == f"{package.measure(curve).l_p:.6f}"
+    assert data["type"].startswith("L6a4")
+
+
+@pytest.mark.parametrize("scale", [1e-6, 0.5, 1e5])
+def test_any_scale_is_shown_at_radius_1(scale: float) -> None:
+    trefoil = package.start("3_1", known=True)[0]
+    (one,), (other,) = (Tags(page([("", k * trefoil)], "t")).data for k in (1, scale))
+    np.testing.assert_allclose(
+        decoded(one["vertices"], "<f4"), decoded(other["vertices"], "<f4"), rtol=1e-5, atol=1e-5
+    )
+    assert one["name"] == one["type"] == "3_1"
+    assert float(dict(other["rows"])["R_s as given"]) == pytest.approx(scale, rel=1e-6)
+
+
+def test_curvature_is_that_of_the_inscribed_arcs() -> None:
+    trefoil = package.start("3_1", known=True)
+    assert 1 / curvature(trefoil).max() == pytest.approx(package.measure(trefoil).min_rad)
+    angle = np.linspace(0, 2 * np.pi, 50, endpoint=False)
+    circle = 3 * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    np.testing.assert_allclose(curvature([circle]), 1 / (3 * np.cos(np.pi / 50)))
+
+
+def test_names_do_not_break_out() -> None:
+    tags = Tags(page([(EVIL, package.start("3_1", known=True))], EVIL))
+    assert tags.data[0]["name"] == EVIL
+    assert not [tag for tag, attributes in tags.tags if tag == "img" or "onerror" in attributes]
+    assert sum(tag == "script" for tag, _ in tags.tags) == 2
+    assert ("title", EVIL) in tags.texts
+
+
+@pytest.mark.parametrize("name", ["\ud800.txt", "a\u202etxt", "a\x1b[31m", "\u2028", "Ω ∞", ""])
+def test_any_name_can_be_written(name: str, tmp_path: Path) -> None:
+    package.view({name: "3_1"}).save(tmp_path / "page.html")
+    html = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert not re.search("[\x1b\u202e\u2028]", html)
+    assert len(Tags(html).data) == 1
+
+
+def test_a_page_is_small() -> None:
+    rope = package.tighten("3_1", 500)
+    assert len(rope.view().html.encode()) < 100_000
+
+
+def test_titles() -> None:
+    assert titled(["a"]) == "a"
+    assert titled(["a", "b", "c"]) == "a and 2 more"
+    assert titled([""]) == "Rope"
+
+
+def turn(seed: int) -> NDArray[np.float64]:
+    """Return a rotation by chance."""
+    q = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    return np.asarray(q * np.linalg.det(q))
+
+
+@pytest.mark.parametrize("name", ["4_1", "Borromean", "7_4"])
+def test_several_curves_are_turned_alike(name: str) -> None:
+    curve = package.start(name, known=True)
+    other = [component[::-1] @ turn(1).T + 5.0 for component in package.refine(curve, 333)]
+    here, there = turned([curve, other])
+    assert np.linalg.det(there) == pytest.approx(1)
+    # A symmetry of the knot may lie between the two; it keeps their boxes.
+    boxes = [
+        np.ptp(np.concatenate(list(parts)) @ frame.T, axis=0)
+        for parts, frame in ((curve, here), (other, there))
+    ]
+    np.testing.assert_allclose(boxes[0], boxes[1], atol=0.2)
+
+
+def test_a_curve_of_another_kind_is_turned_too() -> None:
+    frames = turned([package.start("3_1"), package.start("Hopf"), package.start("4_1")])
+    assert all(np.linalg.det(frame) == pytest.approx(1) for frame in frames)
+
+
+def test_the_command(sono: Sono, folder: Path) -> None:
+    assert sono("view", "3_1.txt").stderr.startswith("sono: 3_1.html: ")
+    (data,) = Tags((folder / "3_1.html").read_text()).data
+    assert data["name"] == data["type"] == "3_1"
+    assert data["sizes"] == [len(package.start("3_1")[0])]  # the file's, not the atlas's
+    again = sono("view", "3_1.txt")
+    assert again.exit_code == 2
+    assert "--force" in again.stderr
+    assert sono("view", "3_1.txt", "--force", "-q").stderr == ""
+
+
+def test_the_command_takes_names_and_several(sono: Sono, folder: Path) -> None:
+    done = sono("view", "4_1", "3_1.txt", "Hopf", "-o", "-")
+    assert [data["name"] for data in Tags(done.stdout).data] == ["4_1", "3_1", "Hopf"]
+    assert done.stderr == ""
+    assert not list(folder.glob("*.html"))
+
+
+def test_a_wrong_file_spoils_only_itself(sono: Sono, folder: Path) -> None:
+    (folder / "bad.txt").write_text("0 0 0\n1 0 0\nx\n")
+    (folder / "flat.txt").write_text("0 0 0\n1 0 0\n1 1 0\n0 0 0\n1 1 1\n")
+    done = sono("view", "bad.txt", "nosuch.txt", "flat.txt", "3_1.txt", "-o", "page.html")
+    assert done.exit_code == 1
+    assert [line.split(":")[1].strip() for line in done.stderr.splitlines()] == [
+        "bad.txt", "nosuch.txt", "flat.txt", "page.html",
+    ]  # fmt: skip
+    assert len(Tags((folder / "page.html").read_text()).data) == 1
+
+
+def test_no_page_without_a_curve(sono: Sono, folder: Path) -> None:
+    done = sono("view", "T(2,59)", "nosuch")
+    assert done.exit_code == 1
+    assert "`sono tighten 'T(2,59)' -o rope.txt` makes one" in done.stderr
+    assert not list(folder.glob("*.html"))
+
+
+@pytest.mark.parametrize("output", ["page.png", "page", "folder/", "3_1.txt"])
+def test_a_page_is_called_so(sono: Sono, folder: Path, output: str) -> None:
+    before = sorted(folder.iterdir())
+    done = sono("view", "3_1", "--force", "-o", output)
+    assert done.exit_code == 2
+    assert "a page is called .html" in done.stderr
+    assert sorted(folder.iterdir()) == before
+
+
+def test_a_folder_in_the_way(sono: Sono, folder: Path) -> None:
+    (folder / "page.html").mkdir()
+    done = sono("view", "3_1", "-o", "page.html")
+    assert done.exit_code == 1
+    assert "cannot be written" in done.stderr
+
+
+def test_what_python_is_given() -> None:
+    tight = package.tighten("3_1", 60)
+    assert tight.view() == package.view(tight) == package.view(tight.curve)
+    frame = tight.view()._repr_html_()
+    assert frame.startswith("<iframe")
+    assert Tags(Tags(frame).tags[0][1]["srcdoc"] or "").data[0]["type"] == "3_1"
+    with pytest.raises(ValueError, match="no rope"):
+        package.view("T(2,59)")
+    with pytest.raises(ValueError, match="give a rope"):
+        package.view()
+    with pytest.raises(package.CurveError):
+        package.view([[0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 0, 0]])
