@@ -28,7 +28,7 @@ from sono.tables import COLUMNS
 WEAKEST = 1e-3
 """Share of the strongest contact's force below which a contact is left out."""
 
-SCRIPTS = ("curve", "colours", "camera", "paint", "flat", "map", "view")
+SCRIPTS = ("curve", "colours", "camera", "paint", "map", "flat", "view")
 """The parts of the page's script, each of which uses those before it."""
 
 ROWS = ("n", "components", "dl", "l_p", "l_c", "l_a", "min_rad", "sr", "dispersion")

@@ -55,7 +55,7 @@ class Camera {
 
   /** Return what a painter must know to show a curve in a picture of this width over height. */
   look(curve, aspect) {
-    const size = curve.extent, fit = 1.06 * size * Math.max(1, 1 / aspect);
+    const size = curve.extent, fit = 1.1 * size * Math.max(1, 1 / aspect);
     const turn = times(this.turn, curve.frame), far = (LENS * fit) / this.zoom + size * 0.3;
     const reach = size * 1.1;
     return {

@@ -1,5 +1,8 @@
 // A curve as it came: vertices at R = 1 and what is known of each; and what is reckoned from them.
 
+/** The distance between two rings of a tube at most, but for the coarsest ropes: an arc of radius 1 rises 0.002 over it. */
+const RING = 0.12;
+
 /** Decode base64 of little-endian numbers. */
 function numbers(text, Kind) {
   return new Kind(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
@@ -111,7 +114,7 @@ class Curve {
   }
 
   axis(c) {
-    const pieces = Math.max(1, Math.min(24, Math.round(3000 / this.n)));
+    const pieces = Math.min(16, Math.ceil(this.length / this.n / RING));
     const axis = [];
     for (let i = this.first[c]; i < this.first[c] + this.sizes[c]; i++) {
       const here = this.vertex(i);

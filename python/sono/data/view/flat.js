@@ -5,14 +5,13 @@ const DETAIL = 900;
 
 class FlatPainter {
   constructor(canvas) {
-    this.pen = canvas.getContext("2d");
+    this.pen = canvas.getContext("2d", WITHOUT_CARD);
   }
 
   draw(scene) {
     const { pen } = this, { width, height } = pen.canvas;
     pen.fillStyle = css(scene.back);
     pen.fillRect(0, 0, width, height);
-    pen.lineCap = "round";
     for (const { from, to, thickness, colour } of this.strokes(scene).sort((a, b) => a.from[2] - b.from[2])) {
       const [one, other] = [from, to].map((p) => this.flat(scene, p, width, height));
       const wide = Math.max(1.5, (thickness * scene.look.lens[1] * height) / -from[2]);
@@ -26,14 +25,8 @@ class FlatPainter {
   }
 
   stroke(one, other, width, colour, cap) {
-    const { pen } = this;
-    pen.beginPath();
-    pen.moveTo(...one);
-    pen.lineTo(...other);
-    pen.lineWidth = width;
-    pen.lineCap = cap;
-    pen.strokeStyle = colour;
-    pen.stroke();
+    Object.assign(this.pen, { lineWidth: width, lineCap: cap, strokeStyle: colour });
+    stroke(this.pen, one, other);
   }
 
   strokes({ curve, colours, look, beads, thin, radius, marks }) {

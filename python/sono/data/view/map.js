@@ -1,35 +1,51 @@
 // The contact map: a dot for each contact, at the arclengths of the two vertices that press on each other.
 
+/** Many small strokes are drawn faster without a graphics card, above all where there is none. */
+const WITHOUT_CARD = { willReadFrequently: true };
+
 const MARGIN = 30;
 /** Pixels left of the map and below it, for the numbers. */
 
 class ContactMap {
   constructor(canvas) {
     this.canvas = canvas;
-  }
-
-  /** Fit the canvas to the page; return its pen and the side of the map. */
-  prepared() {
-    const dense = Math.min(devicePixelRatio || 1, 2), size = this.canvas.clientWidth;
-    this.canvas.width = this.canvas.height = Math.round(size * dense);
-    const pen = this.canvas.getContext("2d");
-    pen.scale(dense, dense);
-    return [pen, size - MARGIN - 4];
+    this.pen = canvas.getContext("2d", WITHOUT_CARD);
+    this.dots = document.createElement("canvas");
+    this.drawn = "";
   }
 
   place(s) {
     return (this.side * s) / this.curve.length;
   }
 
+  /** Draw the contacts if they are others than before, and over them the lines of up to two vertices. */
   draw(curve, marks, inks) {
-    this.curve = curve;
-    const [pen, side] = this.prepared();
-    this.side = side;
+    const dense = Math.min(devicePixelRatio || 1, 2), size = this.canvas.clientWidth, { pen, canvas } = this;
+    const wanted = JSON.stringify([size, dense, inks, marks]);
+    if (curve === this.curve && wanted === this.drawn) return;
+    const anew = curve !== this.curve || canvas.width !== Math.round(size * dense) || inks.line !== this.line;
+    [this.curve, this.drawn, this.line, this.side] = [curve, wanted, inks.line, size - MARGIN - 4];
+    if (anew) this.drawContacts(Math.round(size * dense), dense, inks);
+    pen.resetTransform();
+    pen.clearRect(0, 0, canvas.width, canvas.height);
+    pen.drawImage(this.dots, 0, 0);
+    const [one, other = one] = marks;
+    if (!one) return;
+    this.fit(pen, dense);
+    this.drawCross(pen, one, other, inks);
+  }
+
+  fit(pen, dense) {
+    pen.scale(dense, dense);
     pen.translate(MARGIN, 4);
+  }
+
+  drawContacts(pixels, dense, inks) {
+    for (const canvas of [this.canvas, this.dots]) canvas.width = canvas.height = pixels;
+    const pen = this.dots.getContext("2d", WITHOUT_CARD);
+    this.fit(pen, dense);
     this.drawAxes(pen, inks);
     this.drawDots(pen);
-    const [one, other = one] = marks;
-    if (one) this.drawCross(pen, one, other, inks);
   }
 
   drawAxes(pen, { line, soft }) {
@@ -38,7 +54,7 @@ class ContactMap {
     pen.strokeRect(0.5, 0.5, side - 1, side - 1);
     for (const end of curve.ends.slice(0, -1)) {
       const x = Math.round(this.place(end)) + 0.5;
-      for (const [a, b] of [[[x, 0], [x, side]], [[0, side - x], [side, side - x]]]) this.line(pen, a, b);
+      for (const [a, b] of [[[x, 0], [x, side]], [[0, side - x], [side, side - x]]]) stroke(pen, a, b);
     }
     pen.fillStyle = soft;
     pen.font = "11px system-ui, sans-serif";
@@ -51,13 +67,6 @@ class ContactMap {
     }
     pen.textAlign = "right";
     pen.fillText("s / R", side, side + 26);
-  }
-
-  line(pen, from, to) {
-    pen.beginPath();
-    pen.moveTo(...from);
-    pen.lineTo(...to);
-    pen.stroke();
   }
 
   /** Draw the weakest contacts first. */
@@ -80,9 +89,9 @@ class ContactMap {
     const { side, curve } = this;
     const [x, y] = [one, other].map(({ vertex }) => this.place(curve.arclength[vertex]));
     pen.strokeStyle = mark;
-    this.line(pen, [x, 0], [x, side]);
+    stroke(pen, [x, 0], [x, side]);
     pen.strokeStyle = one === other ? mark : second;
-    this.line(pen, [0, side - y], [side, side - y]);
+    stroke(pen, [0, side - y], [side, side - y]);
   }
 
   /** Return the contact nearest to a point of the map, or else the two vertices that the point stands for. */
@@ -100,6 +109,13 @@ class ContactMap {
     }
     return found;
   }
+}
+
+function stroke(pen, from, to) {
+  pen.beginPath();
+  pen.moveTo(...from);
+  pen.lineTo(...to);
+  pen.stroke();
 }
 
 /** Return the round number nearest above x: 1, 2 or 5, and zeros. */
