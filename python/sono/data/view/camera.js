@@ -1,7 +1,7 @@
 // Where a curve is seen from: a turn, a shift across the picture, and a zoom.
 
-const LENS = 3.2;
 /** The distance at which 2 units fill the height of the picture. */
+const LENS = 3.2;
 
 const times = (a, b) => [0, 1, 2].map((r) => [0, 1, 2].map((c) => a[r][0] * b[0][c] + a[r][1] * b[1][c] + a[r][2] * b[2][c]));
 const applied = (a, p) => a.map((row) => dot(row, p));

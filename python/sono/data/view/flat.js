@@ -1,7 +1,7 @@
 // The rope without WebGL2: strokes on a plain canvas, the far ones first, each on a dark edge.
 
-const DETAIL = 900;
 /** Strokes at most, so that turning stays smooth. */
+const DETAIL = 900;
 
 class FlatPainter {
   constructor(canvas) {

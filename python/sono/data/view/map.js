@@ -3,8 +3,8 @@
 /** Many small strokes are drawn faster without a graphics card, above all where there is none. */
 const WITHOUT_CARD = { willReadFrequently: true };
 
-const MARGIN = 30;
 /** Pixels left of the map and below it, for the numbers. */
+const MARGIN = 30;
 
 class ContactMap {
   constructor(canvas) {
@@ -23,8 +23,8 @@ class ContactMap {
     const dense = Math.min(devicePixelRatio || 1, 2), size = this.canvas.clientWidth, { pen, canvas } = this;
     const wanted = JSON.stringify([size, dense, inks, marks]);
     if (curve === this.curve && wanted === this.drawn) return;
-    const anew = curve !== this.curve || canvas.width !== Math.round(size * dense) || inks.line !== this.line;
-    [this.curve, this.drawn, this.line, this.side] = [curve, wanted, inks.line, size - MARGIN - 4];
+    const anew = curve !== this.curve || canvas.width !== Math.round(size * dense) || inks.line !== this.theme;
+    [this.curve, this.drawn, this.theme, this.side] = [curve, wanted, inks.line, size - MARGIN - 4];
     if (anew) this.drawContacts(Math.round(size * dense), dense, inks);
     pen.resetTransform();
     pen.clearRect(0, 0, canvas.width, canvas.height);

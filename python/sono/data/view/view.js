@@ -1,11 +1,11 @@
 // The page: its curves and what is shown of them, and what mouse, fingers and keys do.
 
 const $ = (id) => document.getElementById(id);
-const TURN = 0.12;
 /** Radians that an arrow key turns by. */
+const TURN = 0.12;
 
-const THIN = 0.13;
 /** The radius of the rope that lets its contacts be seen. */
+const THIN = 0.13;
 
 const given = JSON.parse($("data").textContent);
 const curves = [];
