@@ -21,6 +21,12 @@ SOFTWARE = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enab
 
 WIDE = {"width": 760, "height": 440}
 
+FIRST_PICTURE = """new Promise((done) => {
+  const look = () => (performance.getEntriesByName("drawn").length ? done() : requestAnimationFrame(look));
+  look();
+})"""
+"""Waits for it; playwright's own waiting needs eval, which the page forbids."""
+
 TELL: dict[str, Callable[[Any], str]] = {
     "console": lambda message: str(message.text),
     "pageerror": str,
@@ -118,7 +124,7 @@ def opened(chromium: Any, tab: Any, tmp_path: Path) -> Iterator[Open]:
             listeners.append((page, event, lambda it, told=told: complaints.append(told(it))))
             page.on(*listeners[-1][1:])
         page.goto(path.as_uri())
-        page.wait_for_function("performance.getEntriesByName('drawn').length")
+        page.evaluate(FIRST_PICTURE)
         return Seen(page)
 
     yield show
@@ -361,6 +367,6 @@ def test_a_name_is_only_text(opened: Open) -> None:
 def test_a_notebook_shows_it(tab: Any) -> None:
     tab.set_content(sono.view("3_1")._repr_html_())
     frame = tab.frames[1]
-    frame.wait_for_function("performance.getEntriesByName('drawn').length")
+    frame.evaluate(FIRST_PICTURE)
     assert frame.locator("#name").inner_text() == "3_1"
     assert share(bluish(Seen(tab).picture("iframe"))) > 0.05
