@@ -1,7 +1,7 @@
 // The rope without WebGL2: strokes on a plain canvas, the far ones first, each on a dark edge.
 
-/** Strokes at most, so that turning stays smooth. */
-const DETAIL = 900;
+/** Length of a stroke along the rope, in radii: short enough that each is in front of others, or behind, as a whole. */
+const STROKE = 0.8;
 
 class FlatPainter {
   constructor(canvas) {
@@ -9,49 +9,52 @@ class FlatPainter {
   }
 
   draw(scene) {
-    const { pen } = this, { width, height } = pen.canvas;
+    const { pen } = this, { width, height } = pen.canvas, { lens } = scene.look;
     pen.fillStyle = css(scene.back);
     pen.fillRect(0, 0, width, height);
-    for (const { from, to, thickness, colour } of this.strokes(scene).sort((a, b) => a.from[2] - b.from[2])) {
-      const [one, other] = [from, to].map((p) => this.flat(scene, p, width, height));
-      const wide = Math.max(1.5, (thickness * scene.look.lens[1] * height) / -from[2]);
-      this.stroke(one, other, wide, css(scaled(colour, 0.45)), "butt");
-      this.stroke(one, other, 0.86 * wide, css(colour), "round");
+    pen.lineJoin = "round";
+    const depth = ({ points }) => points.reduce((sum, p) => sum + p[2] / points.length, 0);
+    const flat = ([x, y, z]) => [0.5 * width * (1 - (lens[0] * x) / z), 0.5 * height * (1 + (lens[1] * y) / z)];
+    for (const line of this.lines(scene).sort((a, b) => depth(a) - depth(b))) {
+      const wide = Math.max(1.5, (line.thickness * lens[1] * height) / -depth(line));
+      this.drawLine(line.points.map(flat), wide, line.colour, line.points.length > 2 ? "butt" : "round");
     }
   }
 
-  flat({ look }, p, width, height) {
-    return [0.5 * width * (1 - (look.lens[0] * p[0]) / p[2]), 0.5 * height * (1 + (look.lens[1] * p[1]) / p[2])];
+  /** Draw a line on its dark edge, which has no ends where the rope goes on. */
+  drawLine(points, wide, colour, ends) {
+    const { pen } = this, path = new Path2D();
+    points.forEach((p, k) => (k ? path.lineTo(...p) : path.moveTo(...p)));
+    Object.assign(pen, { lineWidth: wide, lineCap: ends, strokeStyle: css(scaled(colour, 0.45)) });
+    pen.stroke(path);
+    Object.assign(pen, { lineWidth: 0.88 * wide, lineCap: "round", strokeStyle: css(colour) });
+    pen.stroke(path);
   }
 
-  stroke(one, other, width, colour, cap) {
-    Object.assign(this.pen, { lineWidth: width, lineCap: cap, strokeStyle: colour });
-    stroke(this.pen, one, other);
-  }
-
-  strokes({ curve, colours, look, beads, thin, radius, marks }) {
-    const rope = beads ? this.beads(curve, colours, look, radius) : this.axis(curve, colours, look, radius);
-    const contacts = thin ? contactRods(curve) : [];
-    const sleeves = marks.map(({ vertex, colour }) => sleeve(curve, vertex, colour));
-    const rods = (list, size) => list.map(([a, b]) => ({
-      from: look.seen(a.centre), to: look.seen(b.centre), thickness: size * Math.hypot(...a.u), colour: a.colour.map((x) => x ** (1 / 2.2)),
+  /** Return all there is to draw, as lines in the picture's space. */
+  lines({ curve, colours, look, beads, thin, radius, marks }) {
+    const straight = (rods, size) => rods.map(([a, b]) => ({
+      points: [a.centre, b.centre], thickness: size * Math.hypot(...a.u), colour: a.colour.map((x) => x ** (1 / 2.2)),
     }));
-    return [...rope, ...rods(contacts, 1), ...rods(sleeves, 1.1 * radius)];
+    return [
+      ...(beads ? this.balls(curve, colours, radius) : this.axis(curve, colours, radius)),
+      ...straight(thin ? contactRods(curve) : [], 1),
+      ...straight(marks.map(({ vertex, colour }) => sleeve(curve, vertex, colour)), 1.1 * radius),
+    ].map((line) => ({ ...line, points: line.points.map(look.seen) }));
   }
 
-  beads(curve, colours, look, thickness) {
-    return colours.map((colour, i) => {
-      const from = look.seen(curve.vertex(i));
-      return { from, to: from, thickness, colour };
-    });
+  balls(curve, colours, thickness) {
+    return colours.map((colour, i) => ({ points: [curve.vertex(i), curve.vertex(i)], thickness, colour }));
   }
 
-  axis(curve, colours, look, thickness) {
-    const step = Math.max(1, Math.ceil(curve.rings().flat().length / DETAIL));
-    return curve.rings().flatMap((axis) => {
-      const rings = axis.filter((_, k) => k % step === 0);
-      const places = rings.map(({ centre }) => look.seen(centre));
-      return rings.map(({ vertex }, k) => ({ from: places[k], to: places[(k + 1) % places.length], thickness, colour: colours[vertex] }));
+  axis(curve, colours, thickness) {
+    return curve.rings().flatMap((rings, c) => {
+      const along = curve.ends[c] - (c ? curve.ends[c - 1] : 0), pieces = Math.ceil(along / STROKE);
+      return Array.from({ length: pieces }, (_, k) => {
+        const [from, to] = [k, k + 1].map((piece) => Math.round((piece * rings.length) / pieces));
+        const points = Array.from({ length: to - from + 2 }, (_, j) => rings[(from + j) % rings.length].centre);
+        return { points, thickness, colour: colours[rings[from].vertex] };
+      });
     });
   }
 }

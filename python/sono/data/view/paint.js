@@ -107,7 +107,7 @@ function sleeve(curve, i, colour) {
 class Painter {
   constructor(canvas) {
     const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false }));
-    if (!gl) throw new Error("WebGL2 is not to be had");
+    if (!gl) throw new Error("there is no WebGL2 here");
     this.strip = this.buffer(new Float32Array(Array.from({ length: 2 * SIDES + 2 }, (_, k) => [k % 2, (2 * Math.PI * (k >> 1)) / SIDES]).flat()));
     this.square = this.buffer(new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]));
     this.rods = this.program(...ROD);

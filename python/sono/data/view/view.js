@@ -24,7 +24,7 @@ function painterOf(canvas) {
     const plain = canvas.cloneNode(); // one that has given a context gives no other
     canvas.replaceWith(plain);
     stage = plain;
-    $("warning").textContent = `Without WebGL2 (${error.message}) the rope is only sketched. A newer browser, or hardware acceleration in its settings, shows it in the round.`;
+    $("warning").textContent = `The rope is only sketched: ${error.message}. A newer browser shows it in the round, or this one with hardware acceleration.`;
     $("warning").hidden = false;
     return new FlatPainter(plain);
   }
