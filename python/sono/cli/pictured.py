@@ -63,8 +63,7 @@ class Pictured:
         from sono.tables import published
 
         rows = self._rows(self._measured)
-        if any(row.get(key) is None for row in rows for key in ("n", "l_p")):
-            raise FormatError("a row has no n or no L_p; `sono measure` writes tables that have them")
+        self._refuse_without(rows, "n", "L_p", "`sono measure` writes both")
         names = {published.name_of(row["knot"]): published.type_of(row["knot"]) for row in rows}
         types = {type: name for name, type in names.items() if starts.knows(name)}
         if len(types) > 1:
@@ -73,14 +72,19 @@ class Pictured:
 
     def searches(self) -> "dict[str, list[Row]]":
         """Return the rows of searches by their knots, likewise."""
-        from sono.formats import FormatError
-
+        rows = self.rows()
+        self._refuse_without(rows, "hits", "L_a", "`sono search` writes both")
         knots: dict[str, list[Row]] = {}
-        for row in self.rows():
-            if row.get("hits") is None or row.get("l_a") is None:
-                raise FormatError(f"{row['knot']}: a row has no hits or no L_a; `sono search` writes both")
+        for row in rows:
             knots.setdefault(str(row["knot"]), []).append(row)
         return knots
+
+    def _refuse_without(self, rows: "list[Row]", one: str, other: str, cure: str) -> None:
+        """Raise `FormatError` for a row that has not both columns."""
+        from sono.formats import FormatError
+
+        if any(row.get(tables.key_of(column)) is None for row in rows for column in (one, other)):
+            raise FormatError(f"{' '.join(self.given)}: a row has no {one} or no {other}; {cure}")
 
     def _rows(self, read: "Callable[[str], list[Row]]") -> "list[Row]":
         from sono.formats import FormatError

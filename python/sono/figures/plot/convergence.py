@@ -43,9 +43,8 @@ class Fit:
         [5.0, 2.0, -3.0]
         """
         if len(np.unique(dl)) < LEAST:
-            raise ValueError(
-                f"a fit of second order takes {LEAST} lengths of edges, not {len(np.unique(dl))}"
-            )
+            given = f"{LEAST} lengths of edges, and these are {len(np.unique(dl))}"
+            raise ValueError(f"a fit of second order takes {given}; tighten the knot at more n")
         powers = (dl / dl.max())[:, None] ** np.arange(LEAST)
         found = np.linalg.lstsq(powers, lengths)[0]
         spare = len(dl) - LEAST
@@ -72,6 +71,8 @@ def draw(rows: Sequence[Row], axes: "Axes") -> None:
     for key, (name, colour, marker) in LENGTHS.items():
         points = np.array([(_edge(row), row[key]) for row in rows if row.get(key) is not None], float)
         dl, lengths = points.reshape(-1, 2).T
+        if not len(dl) and key != "l_p":
+            continue
         if len(dl) < LEAST and key != "l_p":  # coarse ropes have no L_c
             axes.plot(dl, lengths, marker, color=colour, label=name)
             continue

@@ -1,6 +1,7 @@
 """What all plots share: matplotlib, which is an extra, its styles, new axes, and files of pictures."""
 
 import io
+import warnings
 from contextlib import AbstractContextManager
 from importlib import import_module
 from pathlib import PurePath
@@ -102,7 +103,10 @@ def saved(figure: "Figure", suffix: str) -> bytes:
     """Return the bytes of a picture, the same each time."""
     data = io.BytesIO()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(suffix, {})
-    figure.savefig(data, format=suffix[1:], dpi=DPI, metadata=undated, bbox_inches="tight", pad_inches=0.03)
+    with warnings.catch_warnings(action="ignore"):  # a letter that the font lacks is drawn as a box
+        figure.savefig(
+            data, format=suffix[1:], dpi=DPI, metadata=undated, bbox_inches="tight", pad_inches=0.03
+        )
     return data.getvalue()
 
 
