@@ -23,9 +23,6 @@ SUFFIXES = (".png", ".svg", ".pdf")
 DPI = 300
 """Dots per inch of what is made of dots."""
 
-WIDTH = 3.4
-"""Inches of a column of a paper."""
-
 LONGEST = 24
 """Letters of a label."""
 
@@ -42,6 +39,10 @@ SCALES = {"light": "viridis_r", "dark": "viridis"}
 """Scales of colour on which what stands out most is most."""
 
 _SAME = {
+    "figure.figsize": (3.4, 2.7),
+    "savefig.dpi": DPI,
+    "savefig.bbox": "tight",
+    "savefig.pad_inches": 0.03,
     "font.size": 8,
     "axes.titlesize": 8,
     "legend.fontsize": 7,
@@ -89,7 +90,9 @@ def given(axes: Any, panels: int = 1) -> Any:
     """Return axes, or a pair of them; new ones of pyplot if there are none."""
     if axes is not None:
         return axes
-    return library("matplotlib.pyplot").subplots(1, panels, layout="constrained")[1]
+    width, height = library().rcParams["figure.figsize"]
+    size = (width, panels * height)
+    return library("matplotlib.pyplot").subplots(panels, 1, figsize=size, layout="constrained")[1]
 
 
 def sheet(rows: int, columns: int, size: tuple[float, float]) -> "tuple[Figure, list[Axes]]":
@@ -100,13 +103,11 @@ def sheet(rows: int, columns: int, size: tuple[float, float]) -> "tuple[Figure, 
 
 
 def saved(figure: "Figure", suffix: str) -> bytes:
-    """Return the bytes of a picture, the same each time."""
+    """Return the bytes of a picture, the same each time; the style must still be on."""
     data = io.BytesIO()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(suffix, {})
     with warnings.catch_warnings(action="ignore"):  # a letter that the font lacks is drawn as a box
-        figure.savefig(
-            data, format=suffix[1:], dpi=DPI, metadata=undated, bbox_inches="tight", pad_inches=0.03
-        )
+        figure.savefig(data, format=suffix[1:], metadata=undated)
     return data.getvalue()
 
 
