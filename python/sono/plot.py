@@ -67,7 +67,7 @@ def convergence(points: Sequence[Point], axes: Axes | None = None) -> Axes:
     P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots", where the trefoil is so drawn.
 
     >>> import sono
-    >>> axes = sono.plot.convergence([sono.tighten("3_1", n) for n in (60, 120, 240, 480)])
+    >>> axes = sono.plot.convergence([sono.tighten("3_1", n) for n in (60, 90, 120)])
     >>> axes.get_xlabel(), len(axes.get_legend().get_texts())
     ('edge length $dl$ / R', 3)
     """
@@ -84,9 +84,8 @@ def contacts(rope: Rope, axes: Axes | None = None) -> Axes:
 
     >>> import sono
     >>> axes = sono.plot.contacts(sono.tighten("Hopf", 60))
-    >>> low, high = axes.get_xlim()
-    >>> low, 24 < high < 26
-    (0.0, True)
+    >>> [round(float(end)) for end in axes.get_xlim()]
+    [0, 25]
     """
     axes = given(axes)
     components = _scaled(rope)

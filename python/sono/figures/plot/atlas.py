@@ -105,6 +105,6 @@ def _logarithmic(axes: "Axes", *which: str) -> None:
     for name in which:
         axes.set(**{f"{name}scale": "log"})
         axis = axes.xaxis if name == "x" else axes.yaxis
-        axis.set_major_locator(ticks.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_locator(ticks.LogLocator(subs=(1, 3)))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(ticks.NullFormatter())

@@ -71,4 +71,4 @@ def draw(components: Components, axes: "Axes") -> None:
     mark(components, axes)
     low, high = axes.get_ylim()
     axes.set(ylim=(max(low, -HEIGHT), min(high, HEIGHT)), ylabel="curvature, torsion · R")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3)
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3)

@@ -49,7 +49,7 @@ def draw(ropes: Sequence[Components], labels: Sequence[str], beads: bool, axes: 
         axes.imshow(picture(balls, low, step, shape), origin="lower", extent=extent)
         if below:
             axes.text(middle[0], middle[1] - height / 2, label(labels[k]), ha="center", va="top")
-    axes.set(xlim=(0, columns * width), ylim=(-rows * (height + below), below / 2), aspect="equal")
+    axes.set(xlim=(0, columns * width), ylim=(-rows * (height + below), 0), aspect="equal")
     axes.set_axis_off()
 
 

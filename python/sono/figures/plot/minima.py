@@ -20,7 +20,7 @@ def draw(rows: Sequence[Row], published: float | None, axes: "Axes") -> None:
     colour = library().rcParams["text.color"]
     if published is not None:
         axes.axvline(published, color=colour, linewidth=0.7, linestyle=(0, (4, 3)), label="published")
-        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1))
+        axes.legend(loc="lower right", bbox_to_anchor=(1, 1))
     axes.vlines(lengths, 0, hits, color="C0")
     axes.plot(lengths, hits, "o", color="C0", clip_on=False)
     for length, count in zip(lengths, hits, strict=True):
