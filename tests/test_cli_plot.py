@@ -98,6 +98,8 @@ WRONG = [
     (["convergence", "lengths.tsv"], "lengths.tsv: a row has no n or no L_p; `sono measure` writes both", 1),
     (["minima", "rows.tsv"], "rows.tsv: a row has no hits or no L_a; `sono search` writes both", 1),
     (["minima", "3_1.txt"], "3_1.txt:1: has no column knot; give a table that sono wrote", 1),
+    (["convergence", "nothing.tsv"], "nothing.tsv: a row has no n or no L_p", 1),
+    (["atlas", "unnamed.tsv"], "no row has an L_a and a name that tells its crossing number", 1),
     (["atlas", "empty.tsv"], "empty.tsv: there is no row in it", 1),
     (["atlas", "3_1.txt"], "3_1.txt:1: has no column knot", 1),
     (["knot"], "give knot a FILE or a NAME", 2),
@@ -113,6 +115,8 @@ def test_wrong_calls(folder: Path, sono: Sono, arguments: list[str], message: st
     (folder / "rows.tsv").write_text(ROWS)
     (folder / "empty.tsv").write_text("knot\tn\tl_p\tl_c\tl_a\n")
     (folder / "lengths.tsv").write_text("knot\tl_a\n3_1\t32.7\n")
+    (folder / "nothing.tsv").write_text("knot\tn\tl_p\n3_1\t0\t32.7\n")
+    (folder / "unnamed.tsv").write_text("knot\tl_a\nmine\t32.7\n")
     result = sono("plot", *arguments, "-o", "x.png")
     assert result.exit_code == code
     assert message in result.stderr

@@ -83,7 +83,8 @@ class Pictured:
         """Raise `FormatError` for a row that has not both columns."""
         from sono.formats import FormatError
 
-        if any(row.get(tables.key_of(column)) is None for row in rows for column in (one, other)):
+        values = [row.get(tables.key_of(column)) for row in rows for column in (one, other)]
+        if not all(isinstance(value, int | float) and value > 0 for value in values):
             raise FormatError(f"{' '.join(self.given)}: a row has no {one} or no {other}; {cure}")
 
     def _rows(self, read: "Callable[[str], list[Row]]") -> "list[Row]":

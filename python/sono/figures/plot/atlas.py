@@ -10,12 +10,14 @@ from sono import tables
 from sono.curve import Floats
 from sono.figures.plot.sheet import library
 from sono.starts import shapes
-from sono.tables import Row
+from sono.starts.shapes import place
+from sono.tables import Row, published
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MARKERS = {"knots": "o", "links": "^", "sums": "s", "torus": "D"}
+MARKERS = dict(zip(shapes.FAMILIES, "o^sD", strict=True))
+"""The families of the atlas, and how they are marked."""
 
 CROSSINGS = "crossing number"
 
@@ -30,29 +32,22 @@ def rows() -> list[Row]:
 
 
 def crossing_number(name: str) -> int | None:
-    """Return the crossing number of a name in the atlas, None for another.
+    """Return the crossing number of a torus type, a name in the tables or a sum of them, None for another.
 
     That of a sum is taken as the sum of those of its parts, which is known of torus and alternating types.
 
-    >>> [crossing_number(name) for name in ("10_165", "11n_38", "L9a14", "T(3,5)", "3_1#3_1", "mine")]
-    [10, 11, 9, 10, 6, None]
+    >>> [crossing_number(name) for name in ("10_165", "K11n38", "Hopf", "T(3,-5)", "3_1#m3_1", "mine")]
+    [10, 11, 2, 10, 6, None]
     """
-    total = 0
-    for part in name.split("#"):
-        if torus := re.fullmatch(r"T\((\d+),(\d+)\)", part):
-            p, q = map(int, torus.groups())
-            total += min(p * (q - 1), q * (p - 1))
-        elif tabled := re.fullmatch(r"m?(?:L(\d+)[an]\d+|(\d+)[an]?_\d+)(\{.*\})?", part):
-            total += int(tabled[1] or tabled[2])
-        else:
-            return None
-    return total
-
-
-def family(name: str) -> str:
-    """Return the kind of a name in the atlas."""
-    kinds = ((r".*#", "sums"), (r"T\(", "torus"), (r"m?L", "links"))
-    return next((kind for pattern, kind in kinds if re.match(pattern, name)), "knots")
+    where = place(name)
+    if where.family == "composites":
+        parts = [crossing_number(part) for part in where.knot.split("#")]
+        return None if None in parts else sum(part or 0 for part in parts)
+    if where.family == "torus":
+        p, q = map(int, re.findall(r"\d+", where.knot))
+        return min(p * (q - 1), q * (p - 1))
+    tabled = re.fullmatch(r"l(\d+)[an]\d+|(\d+)[an]?_\d+", where.knot.casefold())
+    return int(tabled[1] or tabled[2]) if tabled else None
 
 
 def lengths(rows: Sequence[Row], axes: "Axes") -> None:
@@ -77,16 +72,18 @@ def differences(rows: Sequence[Row], axes: "Axes") -> None:
 
 
 def _draw(rows: Sequence[Row], key: str, axes: "Axes") -> None:
+    """Draw a column of rows, each family by itself. Raises `ValueError` where there is nothing to draw."""
+    names = [published.name_of(row["knot"]) for row in rows]
+    places: dict[str, list[tuple[int, float]]] = {}
+    for name, row in zip(names, rows, strict=True):
+        crossings = crossing_number(name)
+        if crossings and row.get(key) is not None:
+            places.setdefault(place(name).family, []).append((crossings, float(str(row[key]))))
+    if key == "l_a" and not places:
+        raise ValueError("no row has an L_a and a name that tells its crossing number, such as 8_18")
     for k, (kind, marker) in enumerate(MARKERS.items()):
-        places = [
-            (x, float(str(row[key])))
-            for row in rows
-            if family(str(row["knot"])) == kind
-            and row.get(key) is not None
-            and (x := crossing_number(str(row["knot"]))) is not None
-        ]
-        if places:
-            axes.plot(*_spread(np.array(places)).T, marker, color=f"C{k}", label=kind, markersize=2)
+        if kind in places:
+            axes.plot(*_spread(np.array(places[kind])).T, marker, color=f"C{k}", label=kind, markersize=2)
 
 
 def _spread(places: Floats) -> Floats:
