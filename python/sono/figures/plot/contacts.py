@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LEAST = 1e-3
-"""Forces below this share of the largest one are left out: they are what rounding leaves of none."""
+"""Forces below this share of the largest one, or of a thousandth of the tension, are what rounding leaves."""
 
 SIZES = 1.0, 18.0
 """Areas of the dots of the least and the largest force, in square points."""
@@ -22,7 +22,7 @@ def draw(components: Components, forces: Forces, axes: "Axes") -> None:
 
     Its force, in units of the mean tension, is its colour and its size.
     """
-    shown = forces.pressing > LEAST * forces.pressing.max(initial=0)
+    shown = forces.pressing > LEAST * forces.pressing.max(initial=LEAST)
     order = np.argsort(forces.pressing[shown], kind="stable")  # the largest last, on top of the others
     pressing = forces.pressing[shown][order]
     one, other = np.concatenate(arclength(components))[forces.contacts[shown][order]].T
