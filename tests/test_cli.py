@@ -46,7 +46,7 @@ def test_version(sono: Sono) -> None:
 
 
 def test_public_names() -> None:
-    assert {*package._HOMES, "__version__", "model"} == {*package.__all__} == {*dir(package)}
+    assert {*package._HOMES, *package._MODULES, "__version__"} == {*package.__all__} == {*dir(package)}
     for name in package._HOMES:
         assert getattr(package, name).__name__ == name
     with pytest.raises(AttributeError, match="no attribute 'loosen'"):

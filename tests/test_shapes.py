@@ -1,5 +1,7 @@
 """The ropes that the package carries: they are the knots of their names, and what tightening begins with."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from conftest import Sono, a_tenth
@@ -10,7 +12,10 @@ from sono.invariants import fingerprint
 from sono.starts import archive, knotinfo, shapes
 from sono.tightening.run import Run
 
-ROPES = {knot: archive.unpacked(data) for knot, data in shapes.ropes("knots").items()}
+ROPES = {
+    knot: archive.unpacked(data)
+    for knot, data in archive.read(shapes.FOLDER.joinpath("knots.zip").read_bytes()).items()
+}
 
 
 def test_a_rope_comes_back_as_it_was_but_for_rounding() -> None:
@@ -130,16 +135,16 @@ def test_the_shape_is_written(sono: Sono) -> None:
 
 
 def test_a_knot_of_a_table_that_is_not_installed_begins_with_its_rope(
-    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def missing(name: str) -> None:
         raise ImportError(name)
 
     monkeypatch.setattr(knotinfo, "knot_row", missing)
-    monkeypatch.setattr(shapes, "ropes", {"knots": {}}.__getitem__)
+    monkeypatch.setattr(shapes, "FOLDER", tmp_path)
     with pytest.raises(ValueError, match=r"pip install 'sono\[knotinfo\]'"):
         starts.drawn("11a_1")
-    monkeypatch.setattr(shapes, "ropes", {"knots": {"11a_1": archive.packed(ROPES["3_1"])}}.__getitem__)
+    (tmp_path / "knots.zip").write_bytes(archive.written({"11a_1": archive.packed(ROPES["3_1"])}))
     assert [c.tolist() for c in starts.drawn("K11a1")] == [c.tolist() for c in ROPES["3_1"]]
 
 

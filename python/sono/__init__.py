@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sono import model as model
+    from sono import plot as plot
     from sono._core import CurveError as CurveError
     from sono.calls import forces as forces
     from sono.calls import identify as identify
@@ -82,7 +83,9 @@ _HOMES = {
     "write": "sono.calls",
 }
 
-__all__ = ["__version__", "model", *sorted(_HOMES)]
+_MODULES = ("model", "plot")
+
+__all__ = ["__version__", *_MODULES, *sorted(_HOMES)]
 
 
 def __getattr__(name: str) -> Any:
@@ -91,8 +94,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("sono")
-    if name == "model":
-        return import_module("sono.model")
+    if name in _MODULES:
+        return import_module(f"sono.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'sono' has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sono import _core
-from sono.records import Record
+from sono.records import Drawn, Record
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ Components: TypeAlias = Sequence[Floats]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Curve(Record, Sequence[Floats]):
+class Curve(Record, Drawn, Sequence[Floats]):
     """A closed polygon of one or more components: `components` are arrays (n_i, 3) that cannot be written to.
 
     It is made of an (n, 3) array, or of one such array for each component; a component's last vertex does not

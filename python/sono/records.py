@@ -3,12 +3,22 @@
 from dataclasses import fields, is_dataclass
 from decimal import Decimal
 from html import escape
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 DIGITS = 9
 """Significant digits of a float that is shown to a reader."""
+
+
+class Drawn:
+    """A rope among results, which can be drawn."""
+
+    def plot(self, axes: Any = None, *, beads: bool = False) -> Any:
+        """Draw the rope as `sono.plot.knot` does, and return the axes. Needs the extra sono[plot]."""
+        from sono import plot  # here, since results need no pictures
+
+        return plot.knot(cast(Any, self), axes=axes, beads=beads)
 
 
 class Record:

@@ -1,7 +1,7 @@
 """The command line: one module a command, imported when it is used.
 
 May import `certificates`, `check_certificate`, `curve`, `figures`, `formats`, `invariants`, `jobs`, `naming`,
-`patience`, `printing`, `starts`, `tables` and `tightening`.
+`patience`, `plot`, `printing`, `starts`, `tables` and `tightening`.
 """
 
 import io
@@ -24,6 +24,7 @@ COMMANDS = {
     "convert": "Write curves in another format.",
     "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
+    "plot": "Draw pictures of ropes and of tables.",
     "search": "Find the shortest tight rope of a knot.",
     "start": "Write the starting conformation of a knot.",
     "tighten": "Tighten curves and write the paper's table.",

@@ -1,4 +1,4 @@
 """Pictures, pages and models of tight ropes.
 
-May import `curve`, `invariants`, `naming`, `printing` and `tables`.
+May import `curve`, `invariants`, `model`, `naming`, `printing`, `starts` and `tables`.
 """

@@ -2,8 +2,9 @@
 
 A folder has for each family, such as the prime knots, a table and an archive of ropes with edges of about 0.2
 radii. The figures of a row are what its rope measures as it is in the archive. L_c is an upper bound on the
-ropelength of the smooth knot; where what is published is below it, it is given once more on finer edges, on
-which it is nearer to that. A knot's type is checked before its row is written.
+ropelength of the smooth knot, and certified: rounded outward all the way. Where what is published is below
+it, or nothing is, it is given once more on finer edges, on which it is nearer to the ropelength. A knot's
+type is checked before its row is written.
 """
 
 import math
@@ -15,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sono import starts
+from sono import _core, starts
 from sono.curve import Components, forces, measure
 from sono.formats import FormatError
 from sono.formats.ropefile import TIGHT, Searched
@@ -33,6 +34,9 @@ from sono.tightening import Tight, polished
 
 FINER_EDGES = (0.1, 0.03)
 """Edge lengths at which L_c is given once more, in radii, the first where it is at most what is published."""
+
+FINEST = 6000
+"""Vertices at which L_c is given once more, at most."""
 
 BALANCED = 1e-4
 """Residual up to which a rope that its file calls tight is taken as it is; forces fitted to ten thousand
@@ -79,7 +83,7 @@ class Atlas:
             curve, searched = _fit(file, watch)
             confirmed_type(knot, curve, file)
             there = self._family(knot).rows.get(knot)
-            if there and (measure(curve).l_a or math.inf) >= (1 - SHORTER) * float(there["l_a"] or 0):
+            if there and not _shorter(curve, self.rope(knot)):
                 return self.checked(knot)
             curve, finer = _finer(knot, curve, watch)
             type = confirmed_type(knot, curve, file)
@@ -164,25 +168,39 @@ def _finer(knot: str, curve: Components, watch: Watch) -> tuple[Components, Row]
     """Give L_c on edges so fine that it is at most what is published, and the rope, perhaps shorter."""
     bound = published.beside({"knot": knot}, published.table())["published"]
     finer: dict[str, Value] = {"n_fine": None, "l_c_fine": None}
-    if not isinstance(bound, float) or (measure(curve).l_c or math.inf) <= bound:
+    if isinstance(bound, float) and _certified(curve) <= bound:
         return curve, finer
-    for edge in FINER_EDGES:
+    for edge in FINER_EDGES if bound else FINER_EDGES[-1:]:
+        if measure(curve).l_p / edge > FINEST:
+            break
         fine = _polished(curve, edge, watch)
         # It may have left a groove of the beads that held it up.
         again = _polished(fine.curve, FINE_EDGE, watch)
-        if again.converged and (again.measures.l_a or math.inf) < (measure(curve).l_a or math.inf):
+        if again.converged and _shorter(again.curve, curve):
             curve = _centred(again.curve)
         confirmed_type(knot, list(fine.curve), knot)
-        finer = {"n_fine": fine.measures.n, "l_c_fine": fine.measures.l_c}
-        if (fine.measures.l_c or math.inf) <= bound:
+        finer = {"n_fine": fine.measures.n, "l_c_fine": _certified(fine.curve)}
+        if isinstance(bound, float) and _certified(fine.curve) <= bound:
             break
     return curve, finer
+
+
+def _shorter(curve: Components, other: Components) -> bool:
+    """Tell whether a tight rope is shorter than another."""
+    one, two = (measure(rope).l_a_or_l_p for rope in (curve, other))
+    return one < (1 - SHORTER) * two
 
 
 def _measured(knot: str, curve: Components) -> dict[str, Value]:
     """Return what a rope measures."""
     m = measure(curve)
-    return {"knot": knot, "n": m.n, "dl": m.dl, "l_p": m.l_p, "l_c": m.l_c, "l_a": m.l_a}
+    return {"knot": knot, "n": m.n, "dl": m.dl, "l_p": m.l_p, "l_c": _certified(curve), "l_a": m.l_a}
+
+
+def _certified(curve: Components) -> float:
+    """Return the certified L_c of a rope. Raises `CurveError` where there is none."""
+    l_c: float = _core.certify(list(curve))["l_c"]
+    return l_c
 
 
 def _polished(curve: Components, edge: float, watch: Watch) -> Tight:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.curve import Components, Measures, measure
-from sono.records import Record
+from sono.records import Drawn, Record
 
 Radii: TypeAlias = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Minimum(Record):
+class Minimum(Record, Drawn):
     """A refined rope, the variant that led there, and the number of trials that did.
 
     `length` is its L_a, `tight` tells whether the polish reached its end, `residual` is the largest force

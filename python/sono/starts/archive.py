@@ -15,6 +15,7 @@ import io
 import zipfile
 import zlib
 from collections.abc import Mapping
+from typing import IO
 
 import numpy as np
 
@@ -63,6 +64,12 @@ def written(ropes: Mapping[str, bytes]) -> bytes:
         for name, rope in ropes.items():
             archive.writestr(zipfile.ZipInfo(name), rope)  # with no time of writing
     return data.getvalue()
+
+
+def one(file: IO[bytes], name: str) -> bytes | None:
+    """Return one rope of the archive in a file, if it is there; no other one is read."""
+    with zipfile.ZipFile(file) as archive:
+        return archive.read(name) if name in archive.NameToInfo else None
 
 
 def read(data: bytes) -> dict[str, bytes]:

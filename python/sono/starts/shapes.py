@@ -9,7 +9,6 @@ They are tight at R_s = 1, on edges of about 0.2 radii, and what a rope of any n
 
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 
@@ -62,7 +61,11 @@ def known(name: str) -> Components | None:
     A link is oriented as `starts.start` has it.
     """
     where = place(name)
-    data = ropes(where.family).get(where.knot)
+    file = FOLDER.joinpath(f"{where.family}.zip")
+    if not file.is_file():
+        return None
+    with file.open("rb") as opened:
+        data = archive.one(opened, where.knot)
     if data is None:
         return None
     rope = archive.unpacked(data)
@@ -85,10 +88,3 @@ def drawn(name: str) -> Components:
         if (rope := known(name)) is None:
             raise
         return rope
-
-
-@cache
-def ropes(family: str) -> dict[str, bytes]:
-    """Return the ropes of a family as the package has them, by their names."""
-    file = FOLDER.joinpath(f"{family}.zip")
-    return archive.read(file.read_bytes()) if file.is_file() else {}

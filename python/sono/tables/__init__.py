@@ -16,7 +16,7 @@ from sono.tables.delimited import Csv, Tsv
 from sono.tables.jsons import Json, JsonLines
 from sono.tables.latex import Latex
 from sono.tables.markdown import Markdown
-from sono.tables.reading import read
+from sono.tables.reading import parse, read, recognises
 from sono.tables.text import Text
 
 __all__ = [
@@ -28,7 +28,9 @@ __all__ = [
     "TableWriter",
     "Value",
     "key_of",
+    "parse",
     "read",
+    "recognises",
     "writer",
 ]
 

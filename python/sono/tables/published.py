@@ -51,7 +51,7 @@ def from_file(path: str) -> dict[str, Row]:
     if not any(row.get("published") or row.get("l_a") for row in rows):
         raise FormatError(f"{path}: has no column published, nor L_a, with a value in it")
     return {
-        _type(row["knot"]): {
+        type_of(row["knot"]): {
             "published": row.get("published") or row.get("l_a"),
             "source": row.get("source") or path,
             "kind": row.get("kind"),
@@ -60,12 +60,12 @@ def from_file(path: str) -> dict[str, Row]:
     }
 
 
-def _type(knot: Value) -> str:
+def type_of(knot: Value) -> str:
     """Return the one name of a knot and its mirror image, without what files add to it."""
-    return starts.canonical(_name(knot))
+    return starts.canonical(name_of(knot))
 
 
-def _name(knot: Value) -> str:
+def name_of(knot: Value) -> str:
     """Return the name of a knot without what files add to it."""
     return re.sub(r"(\.tight|\.n\d+|\.best\d*)+$", "", str(knot))
 
@@ -76,12 +76,12 @@ def beside(row: Row, published: Mapping[str, Row], told: Sequence[str] = ("sourc
     What is `told` of it is some of `VALUE`. The difference of L_c is that of the finer level, where the row
     has one; a limit has a difference too.
     """
-    return _compared(row, published.get(_type(row["knot"]), {}), told)
+    return _compared(row, published.get(type_of(row["knot"]), {}), told)
 
 
 def beside_all(row: Row) -> list[Row]:
     """Return a row for each published value, likewise, or one without any."""
-    return [_compared(row, value, VALUE) for value in reference.values(_type(row["knot"])) or [{}]]
+    return [_compared(row, value, VALUE) for value in reference.values(type_of(row["knot"])) or [{}]]
 
 
 def _compared(row: Row, value: Row, told: Sequence[str]) -> Row:
@@ -125,7 +125,7 @@ def is_too_coarse(row: Row) -> bool:
 
 def doubt(row: Row) -> str | None:
     """Say why the rope of a row, after `beside`, is of another knot than its name says, if it seems so."""
-    name, file = _name(row["knot"]), row.get("file")
+    name, file = name_of(row["knot"]), row.get("file")
     if isinstance(file, str) and os.path.isfile(file):
         with suppress(ValueError):  # a name of no known knot, or a file of no curve
             if may_be_alike(formats.read(file).components, starts.start(name)):

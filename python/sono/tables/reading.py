@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
@@ -18,11 +19,25 @@ def read(source: str) -> list[Row]:
 
     Raises `FormatError` naming file and line.
     """
-    from sono.formats import decoded, load  # here, since numpy would make --help wait
+    from sono.formats import load  # here, since numpy would make --help wait
 
-    name, data = load(source)
+    return parse(*load(source))
+
+
+def parse(name: str, data: bytes) -> list[Row]:
+    """Read a table from the bytes of a file, likewise."""
+    from sono.formats import decoded
+
     text = decoded(name, data)
     return list(_of_json(name, text) if text.lstrip()[:1] in ("{", "[") else _of_cells(name, text))
+
+
+def recognises(data: bytes) -> bool:
+    """Tell whether the bytes of a file begin like a table, and not like a curve."""
+    text = data.decode(errors="replace").lstrip("\ufeff \r\n")
+    if text[:1] in ("{", "["):
+        return '"knot"' in text.split("}")[0]
+    return "knot" in map(str.strip, re.split("[\t,]", (text.splitlines() or [""])[0]))
 
 
 def _of_json(name: str, text: str) -> Iterator[Row]:

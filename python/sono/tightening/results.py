@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from sono.curve import Curve, Forces, Measures
-from sono.records import Record
+from sono.records import Drawn, Record
 from sono.tightening.engines import Status
 from sono.tightening.plan import Stage
 
@@ -21,7 +21,7 @@ class KnotTypeError(ValueError):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Tight(Record):
+class Tight(Record, Drawn):
     """A tightened curve.
 
     `curve` is scaled to R_s = 1; `measures` is what it measures. `converged` tells whether the last engine
