@@ -21,6 +21,7 @@ COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",
     "certify": "Prove bounds on ropelength, and check such proofs.",
     "compare": "Compare ropelengths with the published ones.",
+    "completion": "Complete commands and knots in a shell.",
     "convert": "Write curves in another format.",
     "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
@@ -41,6 +42,8 @@ class _Commands(click.Group):
         if cmd_name not in COMMANDS:
             return None
         command: click.Command = import_module(f"sono.cli.{cmd_name}").command
+        if ctx.resilient_parsing:  # as when a shell asks for completions
+            import_module("sono.cli.completing").equip(command)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
