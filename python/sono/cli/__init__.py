@@ -14,7 +14,7 @@ from typing import Any
 
 import click
 
-from sono.cli import streams
+from sono.cli import streams, versions
 from sono.printing import printable
 
 COMMANDS = {
@@ -81,8 +81,11 @@ class _Commands(click.Group):
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="sono")
-def main() -> None:
+@click.option("--verbose", is_flag=True, is_eager=True, help="More of it, for reports of bugs.")
+@click.option(
+    "--version", is_flag=True, expose_value=False, callback=versions.show, help="Show the version and exit."
+)
+def main(verbose: bool) -> None:
     """Tighten knots: pull a closed curve tight as a rope of radius 1 and measure its ropelength.
 
     Ropelength is length over the rope's RADIUS: the trefoil has 32.743.
@@ -92,6 +95,8 @@ def main() -> None:
       sono tighten trefoil.txt -n 120,240,480
       sono measure trefoil.n480.txt
     """
+    if verbose:
+        raise click.UsageError("--verbose goes with --version")
 
 
 def run() -> None:
