@@ -28,9 +28,9 @@ def report() -> Iterator[tuple[str, str]]:
     yield "platform", platform.platform()
     yield "threads", _threads()
     for requirement in metadata.requires("sono") or []:
-        if needed := re.fullmatch(r"([\w.-]+)[^;]*(?:;.*extra == ['\"](\w+)['\"].*)?", requirement):
+        if needed := re.fullmatch(r"([\w.-]+)[^;]*(?:;.*extra == ['\"]([\w.-]+)['\"].*)?", requirement):
             name, extra = needed.groups()
-            if extra != "test" and f"sono[" not in requirement:
+            if extra != "test" and "sono[" not in requirement:
                 yield name, _version(name) + (f", for sono[{extra}]" if extra else "")
 
 
