@@ -6,11 +6,12 @@ from pathlib import Path
 import pytest
 from conftest import QUICK, Sono
 
+import sono as package
 from sono import formats, starts, tables
 from sono.starts.drawing import mirror
 from sono.tables import published, reference
 
-ATLAS = Path(__file__).parent.parent / "knots" / "atlas" / "knots.tsv"
+ATLAS = Path(package.__file__).parent / "data" / "atlas" / "knots.tsv"
 
 TABLE = "knot\tn\tL_a\tL_c\n8_4\t359\t71.45\t71.69\nm3_1\t164\t32.75\t32.7\nHopf\t60\t25.1\t-\n"
 

@@ -134,7 +134,7 @@ def test_a_file_system_without_locks(folder: Path, sono: Sono, monkeypatch: pyte
     def refuse(*_: object) -> None:
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
 
-    monkeypatch.setattr(locks, "_lock_bytes", refuse)
+    monkeypatch.setattr(locks, "_lock_byte", refuse)
     result = sono("tighten", "3_1.txt", "-n", "60", *QUICK)
     assert result.exit_code == 0
     assert result.stderr == (

@@ -18,6 +18,7 @@ __all__ = [
     "PanicError",
     "Polish",
     "Tightener",
+    "about",
     "balance",
     "certify",
     "crossings",
@@ -214,6 +215,9 @@ class Polish:
     @staticmethod
     def restore(state: str) -> Polish:
         """Go on from a state. Raises `ValueError` if it is none."""
+
+def about() -> tuple[str, str, str, list[str]]:
+    """Return the version, release or debug, the kind of processor, and which wide arithmetic it has."""
 
 def balance(components: _Curve) -> _Forces:
     """Return the forces that come nearest to balance on a curve, by non-negative least squares.

@@ -1,6 +1,7 @@
 //! The Python module `sono._core`: arrays in, arrays out, the interpreter released while Rust works.
 //! No logic; the only folder that names pyo3.
 
+mod about;
 mod certify;
 mod collapse;
 mod curve;
@@ -21,6 +22,8 @@ mod _core {
     use pyo3::prelude::*;
     use pyo3::types::PyTuple;
 
+    #[pymodule_export]
+    use super::about::about;
     #[pymodule_export]
     use super::certify::certify;
     #[pymodule_export]

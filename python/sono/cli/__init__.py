@@ -14,13 +14,14 @@ from typing import Any
 
 import click
 
-from sono.cli import streams
+from sono.cli import streams, versions
 from sono.printing import printable
 
 COMMANDS = {
     "atlas": "Check or improve the table of the shortest known ropes.",
     "certify": "Prove bounds on ropelength, and check such proofs.",
     "compare": "Compare ropelengths with the published ones.",
+    "completion": "Complete commands and knots in a shell.",
     "convert": "Write curves in another format.",
     "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
@@ -43,6 +44,8 @@ class _Commands(click.Group):
         if cmd_name not in COMMANDS:
             return None
         command: click.Command = import_module(f"sono.cli.{cmd_name}").command
+        if ctx.resilient_parsing:  # as when a shell asks for completions
+            import_module("sono.cli.completing").equip(command)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -80,8 +83,11 @@ class _Commands(click.Group):
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="sono")
-def main() -> None:
+@click.option("--verbose", is_flag=True, is_eager=True, help="More of it, for reports of bugs.")
+@click.option(
+    "--version", is_flag=True, expose_value=False, callback=versions.show, help="Show the version and exit."
+)
+def main(verbose: bool) -> None:
     """Tighten knots: pull a closed curve tight as a rope of radius 1 and measure its ropelength.
 
     Ropelength is length over the rope's RADIUS: the trefoil has 32.743.
@@ -91,6 +97,8 @@ def main() -> None:
       sono tighten trefoil.txt -n 120,240,480
       sono measure trefoil.n480.txt
     """
+    if verbose:
+        raise click.UsageError("--verbose goes with --version")
 
 
 def run() -> None:

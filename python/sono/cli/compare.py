@@ -19,7 +19,7 @@ COLUMNS = (
 
 def _sources(ctx: click.Context, param: click.Parameter, value: bool) -> None:
     """List the sources and leave."""
-    if not value:
+    if not value or ctx.resilient_parsing:
         return
     from sono.tables import reference
 

@@ -98,7 +98,7 @@ def _shard(ctx: click.Context, param: click.Parameter, value: str | None) -> sli
 
 def _listed(path: str) -> list[str]:
     try:
-        with click.open_file(path, encoding="utf-8", errors="surrogateescape") as lines:
+        with click.open_file(path, encoding="utf-8-sig", errors="surrogateescape") as lines:
             words = (re.split(r"(?:^|\s)#", line)[0].strip() for line in lines)
             return [word for word in words if word]
     except OSError as error:

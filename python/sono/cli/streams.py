@@ -39,12 +39,19 @@ def secure() -> None:
         while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
             pass
         os.close(descriptor)
-    sys.stdin = sys.stdin or io.TextIOWrapper(io.BufferedReader(_ClosedInput()))
+    sys.stdin = sys.stdin or io.TextIOWrapper(io.BufferedReader(_ClosedInput()), encoding="utf-8")
     sys.stdout = sys.stdout or _ClosedOutput()
-    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115 - until the end
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A file's name in characters that the terminal has not must not stop a table.
         sys.stdout.reconfigure(errors="backslashreplace")
+        if os.name == "nt" and not sys.stdout.isatty() and "PYTHONIOENCODING" not in os.environ:
+            as_files_are(sys.stdout)
+
+
+def as_files_are(stream: io.TextIOWrapper) -> None:
+    """Write to a pipe what is written to files: UTF-8 and plain ends of lines."""
+    stream.reconfigure(encoding="utf-8", newline="\n")
 
 
 def tell(message: str) -> None:

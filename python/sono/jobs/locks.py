@@ -59,7 +59,7 @@ class Claims:
         first = file not in self._open
         descriptor = os.open(file, os.O_RDWR | os.O_CREAT, 0o666) if first else self._open[file]
         try:
-            _lock_bytes(descriptor, place, 1)
+            _lock_byte(descriptor, place)
             # Nobody removes a file of which a byte is locked; it may have gone just before.
             there = not first or os.path.samestat(os.fstat(descriptor), os.stat(file))
         except OSError as error:
@@ -81,24 +81,37 @@ class Claims:
     def __exit__(self, *_: object) -> None:
         """Give the files up."""
         for file, descriptor in self._open.items():
-            with suppress(OSError):  # somebody else still uses it
-                _lock_bytes(descriptor, 0, 0)
-                file.unlink()
-            os.close(descriptor)
+            _leave(descriptor, file)
         self._open = {}
 
 
 if sys.platform == "win32":
     import msvcrt
 
-    def _lock_bytes(descriptor: int, place: int, count: int) -> None:
-        """Lock so many bytes, 0 being all that follow. Raises `OSError` where another process has one."""
-        os.lseek(descriptor, place, os.SEEK_SET)
-        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, count or 2**31 - 1)
+    _PLACES = 2**31 - 1
+    """Bytes that can be locked there."""
+
+    def _lock_byte(descriptor: int, place: int) -> None:
+        """Lock one byte. Raises `OSError` where another process has it."""
+        os.lseek(descriptor, place % _PLACES, os.SEEK_SET)
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+
+    def _leave(descriptor: int, file: Path) -> None:
+        """Close a file, and remove it, which is refused there while somebody else uses it."""
+        os.close(descriptor)
+        with suppress(OSError):
+            file.unlink()
 
 else:
     import fcntl
 
-    def _lock_bytes(descriptor: int, place: int, count: int) -> None:
-        """Lock so many bytes, 0 being all that follow. Raises `OSError` where another process has one."""
-        fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, count, place)
+    def _lock_byte(descriptor: int, place: int) -> None:
+        """Lock one byte. Raises `OSError` where another process has it."""
+        fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, place)
+
+    def _leave(descriptor: int, file: Path) -> None:
+        """Close a file, and remove it if all of it can be locked, since then nobody else uses it."""
+        with suppress(OSError):
+            fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            file.unlink()
+        os.close(descriptor)

@@ -19,8 +19,8 @@ _OF_FILES = "./\\"
 _UNSAFE = re.compile(r"[^\w+-]")
 """What of a key is not taken into the name of a file."""
 
-_UNLIKE_FILES = str.maketrans("/:|", "-_;")
-"""What of a knot's name is changed in the name of a file."""
+_UNLIKE_FILES = str.maketrans('/\\:|*?"<>', "--_;_____")
+"""What of a knot's name is changed in the name of a file, since Windows or others cannot have it."""
 
 LONGEST_NAME = 80
 """Letters of a knot's name in tables and names of files; a longer one, which is a code, is cut and marked."""
