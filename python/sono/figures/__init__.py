@@ -1,0 +1,4 @@
+"""Pictures, pages and models of tight ropes.
+
+May import `curve`.
+"""
