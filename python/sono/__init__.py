@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from sono.curve import Curve as Curve
     from sono.curve import Forces as Forces
     from sono.curve import Measures as Measures
+    from sono.figures.export import export as export
+    from sono.figures.solids import Solid as Solid
     from sono.formats import FormatError as FormatError
     from sono.invariants import TooEntangledError as TooEntangledError
     from sono.naming import Identity as Identity
@@ -66,6 +68,8 @@ _HOMES = {
     "certify": "sono.certificates",
     "Comparison": "sono.comparison",
     "compare": "sono.comparison",
+    "Solid": "sono.figures.solids",
+    "export": "sono.figures.export",
     "forces": "sono.calls",
     "identify": "sono.calls",
     "measure": "sono.calls",

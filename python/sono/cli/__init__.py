@@ -1,6 +1,6 @@
 """The command line: one module a command, imported when it is used.
 
-May import `certificates`, `check_certificate`, `curve`, `formats`, `invariants`, `jobs`, `naming`,
+May import `certificates`, `check_certificate`, `curve`, `figures`, `formats`, `invariants`, `jobs`, `naming`,
 `patience`, `printing`, `starts`, `tables` and `tightening`.
 """
 
@@ -22,6 +22,7 @@ COMMANDS = {
     "certify": "Prove bounds on ropelength, and check such proofs.",
     "compare": "Compare ropelengths with the published ones.",
     "convert": "Write curves in another format.",
+    "export": "Write ropes as solids to be printed.",
     "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
     "search": "Find the shortest tight rope of a knot.",

@@ -2,7 +2,6 @@
 
 import json
 import os
-import shlex
 import sys
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ import click
 
 from sono import tables
 from sono.cli import options, places
-from sono.cli.each import each
+from sono.cli.each import each, rope_of
 
 if TYPE_CHECKING:
     from sono.certificates import Certificate
@@ -102,32 +101,16 @@ def _checked(certificate: str, file: str) -> int:
 def _proven(source: "Source") -> "tuple[VertexFile, Certificate]":
     """Return a curve, or the atlas's rope of a knot, and what is proven of it. Raises `FormatError`."""
     # Imported here, since numpy would make --help wait.
-    from sono import starts
     from sono._core import CurveError
     from sono.certificates import certify
     from sono.jobs.curvefiles import located
     from sono.patience import patiently
 
-    named = source.knot and starts.knows(source.knot)
-    curve = _rope(source) if named else source.read()
+    curve = rope_of(source, "certified")
     try:
         return curve, patiently(lambda: certify(curve.components))
     except CurveError as error:
         raise located(error, curve) from error
-
-
-def _rope(source: "Source") -> "VertexFile":
-    """Return the atlas's rope of a knot. Raises `FormatError`."""
-    import sono
-    from sono.formats import FormatError
-    from sono.jobs.sources import as_file
-
-    try:
-        curve = sono.start(source.given, known=True)
-    except ValueError as error:
-        cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one to be certified"
-        raise FormatError(f"{source}: {error}; {cure}") from error
-    return as_file(source.given, list(curve), f"{source.name}, the rope of the atlas")
 
 
 def row(name: str, file: str, certificate: "Certificate") -> tables.Row:

@@ -37,3 +37,26 @@ def file_of(source: "Source", command: str, does: str) -> "VertexFile":
         start = f"`sono start {shlex.quote(source.knot)} | sono {command} -`"
         raise FormatError(f"{source}: no such file; {command} takes files; {start} {does} a loose start")
     return source.read()
+
+
+def rope_of(source: "Source", purpose: str) -> "VertexFile":
+    """Read a file as it is, or take the rope that the atlas has of a knot. Raises `FormatError`.
+
+    The `purpose`, a participle, is what else a rope of that knot may be made for.
+    """
+    from sono import starts
+
+    return _known(source, purpose) if source.knot and starts.knows(source.knot) else source.read()
+
+
+def _known(source: "Source", purpose: str) -> "VertexFile":
+    import sono
+    from sono.formats import FormatError
+    from sono.jobs.sources import as_file
+
+    try:
+        curve = sono.start(source.given, known=True)
+    except ValueError as error:
+        cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one to be {purpose}"
+        raise FormatError(f"{source}: {error}; {cure}") from error
+    return as_file(source.given, list(curve), f"{source.name}, the rope of the atlas")

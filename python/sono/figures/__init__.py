@@ -1,4 +1,4 @@
 """Pictures, pages and models of tight ropes.
 
-May import `curve`.
+May import `calls`, `curve`, `formats` and `records`.
 """
