@@ -136,12 +136,11 @@ class _Maker:
 
     def written(self, source: "Source") -> "tuple[str, Solid]":
         """Write the solid of a curve; return the file's name and the solid. Raises `FormatError`."""
-        from sono import formats
         from sono.figures import solidfiles
 
         path = self._path(source)
         solid = self._made(source)
-        formats.save(path, solidfiles.content(solid, self.format))
+        solidfiles.write(path, solid, self.format)
         self.done.add(path)
         return path, solid
 

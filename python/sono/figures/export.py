@@ -7,7 +7,6 @@ from sono.calls import Rope, start
 from sono.curve import CurveLike, as_components
 from sono.figures import solidfiles
 from sono.figures.solids import Solid, solid
-from sono.formats import save
 
 DIAMETER, GAP, TOLERANCE = 6.0, 0.4, 0.02
 """Of a rope that is printed, in millimetres: a nozzle is 0.4 wide, a layer 0.1 to 0.2 high."""
@@ -40,5 +39,5 @@ def export(
     format = solidfiles.by_suffix(os.fspath(path))
     curve = start(rope, known=True) if isinstance(rope, str) else rope
     made = solid(as_components(cast("CurveLike", curve)), rope_diameter, gap, tolerance)
-    save(os.fspath(path), solidfiles.content(made, format))
+    solidfiles.write(os.fspath(path), made, format)
     return made
