@@ -102,6 +102,9 @@ fn row(edges: &[Edge], i: usize) -> Writhe {
 /// Half the solid angle of directions from which two edges are seen to cross, with the sign of the
 /// crossing; 0 for edges that meet, which lie in a plane.
 fn half_solid_angle(one: &Edge, other: &Edge) -> f64 {
+    if one.to == other.from || one.from == other.to {
+        return 0.;
+    }
     let (a, b) = (other.from - one.from, other.to - one.from);
     let (c, d) = (other.to - one.to, other.from - one.to);
     let volume = a.dot((other.to - other.from).cross(one.to - one.from));

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sono import model as model
     from sono._core import CurveError as CurveError
+    from sono.calls import descriptors as descriptors
     from sono.calls import forces as forces
     from sono.calls import identify as identify
     from sono.calls import measure as measure
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from sono.naming import Identity as Identity
     from sono.naming import Verdict as Verdict
     from sono.searching import Minimum as Minimum
+    from sono.shape import Descriptors as Descriptors
     from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
     from sono.tightening import Settings as Settings
@@ -70,6 +72,8 @@ _HOMES = {
     "compare": "sono.comparison",
     "Solid": "sono.figures.solids",
     "export": "sono.figures.export",
+    "Descriptors": "sono.shape",
+    "descriptors": "sono.calls",
     "forces": "sono.calls",
     "identify": "sono.calls",
     "measure": "sono.calls",
