@@ -79,7 +79,7 @@ def test_a_planar_curve_that_is_not_convex() -> None:
 
 def test_a_helix_bends_and_twists_as_it_should() -> None:
     """The torus curve (1, k) far out is nearly a helix: curvature and torsion have closed forms."""
-    n, k, big = 20_00, 40, 40.0
+    n, k, big = 2000, 40, 40.0
     t = np.linspace(0, math.tau, n, endpoint=False)
     line = np.stack(
         [(big + np.cos(k * t)) * np.cos(t), (big + np.cos(k * t)) * np.sin(t), np.sin(k * t)], axis=1
@@ -98,14 +98,14 @@ def test_a_hopf_link_of_circles(sign: int) -> None:
     assert abs(found.writhe) == pytest.approx(2)
     assert found.writhe == pytest.approx(-package.descriptors(hopf(60, -sign)).writhe)
     assert found.acn >= 2
-    assert package.identify(hopf(60, sign)).to_dict()["linking"] == [[round(found.writhe / 2)]] or True
+    assert package.identify(hopf(60, sign)).linking == (round(found.writhe / 2),)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_crossings_counted_from_many_sides(seed: int) -> None:
     curve = [some_knot(seed), some_knot(seed + 10)]
     found = package.descriptors(curve)
-    writhe, crossings = by_projections(curve, 4000)
+    writhe, crossings = by_projections(curve, 2000)
     assert found.writhe == pytest.approx(writhe, abs=0.3)
     assert found.acn == pytest.approx(crossings, abs=0.3)
     linking = (found.writhe - found.self_writhe) / 2
