@@ -136,7 +136,7 @@ def descriptors(vertices: Rope) -> Descriptors:
 
     >>> found = descriptors(start("3_1", known=True))
     >>> round(found.writhe, 1), round(found.acn, 1), found.total_curvature > 4 * math.pi
-    (-3.4, 4.3, True)
+    (3.4, 4.3, True)
     """
     return shape.descriptors(_components(vertices))
 
