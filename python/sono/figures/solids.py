@@ -18,6 +18,9 @@ from sono.records import Record
 MOST = 5_000_000
 """Triangles of a solid; a file .stl of them has 250 MB."""
 
+LONGEST = 0.2
+"""Of the edges, in R_c: for the edges' sake R_c is less than the thickness by an eighth of its square."""
+
 SLACK = 1.03
 """Of the longest edges, for unequal shares of components; the tolerance has room for it."""
 
@@ -83,6 +86,7 @@ def _laid(curve: Components, radius: float, tolerance: float, most: int) -> tupl
     while measures.r_c is None or longest == 0 or measures.dl > SLACK * longest:
         r_c = measures.r_c or measures.r_s
         longest = spacing_within(radius * r_c, max(measures.min_rad, r_c), tolerance * r_c)
+        longest = min(longest, LONGEST * r_c)
         n = max(math.ceil(length / longest), 12 * len(line))
         if n > most:
             cure = "tighten the curve, or give a wider tolerance"
