@@ -82,11 +82,12 @@ def check(diameter: float, gap: float, tolerance: float) -> None:
 def _laid(curve: Components, radius: float, tolerance: float, most: int) -> tuple[list[Floats], float]:
     """Return K_P on edges that are short enough, and its R_c; radius and tolerance are shares of R_c."""
     line, measures = list(curve), measure(curve)
-    length, longest = measures.inscribed_length, 0.0
+    longest = 0.0
     while measures.r_c is None or longest == 0 or measures.dl > SLACK * longest:
         r_c = measures.r_c or measures.r_s
         longest = spacing_within(radius * r_c, max(measures.min_rad, r_c), tolerance * r_c)
         longest = min(longest, LONGEST * r_c)
+        length = measures.length  # K_P of a coarse curve may be almost as long as that
         n = max(math.ceil(length / longest), 12 * len(line))
         if n > most:
             cure = "tighten the curve, or give a wider tolerance"
