@@ -3,7 +3,7 @@
 //! **Curve -> measures** is one road, **curve -> loose curve -> rope -> sweeps of SONO -> Newton steps of
 //! the polish -> tight curve** the other. The radius of a rope is R = 1, and ropelength is length over
 //! radius. Dependencies point one way only:
-//! `error <- geometry <- measures, certify, invariants, beads, outcome <- resample, loosening <- sono, polish <- python`.
+//! `error <- geometry <- measures, writhe, certify, invariants, beads, outcome <- resample, loosening <- sono, polish <- python`.
 //! `sono` and `polish` do not know each other; only `python` knows of Python. `diagrams` of knots know of
 //! no curves.
 
@@ -21,6 +21,7 @@ pub mod polish;
 mod python;
 pub mod resample;
 pub mod sono;
+pub mod writhe;
 
 pub use certify::bound::{Bound, certify};
 pub use error::{Error, Result};
@@ -35,3 +36,4 @@ pub use sono::collapse::Collapse;
 pub use sono::settings::Settings;
 pub use sono::stage::Stage;
 pub use sono::tighten::{Status, Tightener};
+pub use writhe::{Writhe, writhe};

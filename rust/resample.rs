@@ -27,10 +27,7 @@ const LONGEST_CHORD: f64 = 1.2;
 pub fn rope_curve(curve: &Curve, most: usize) -> Result<Curve> {
     check_embedded(curve)?;
     let given = measure(curve);
-    let inscribed = match given.r_c {
-        Some(_) => Inscribed::new(curve),
-        None => Inscribed::clear_of_strands(curve),
-    };
+    let inscribed = inscribed(curve, &given);
     let lengths: Vec<_> = inscribed.lengths().collect();
     let mut dl = LOOSE_EDGE * given.r_c.unwrap_or(given.dl);
     loop {
@@ -90,7 +87,8 @@ fn longest_mean_edge(curve: &Curve) -> f64 {
 }
 
 /// K_P sampled with `n` vertices in all at equal chords, in the curve's own unit, the first vertex
-/// `shift` edges after the start: how a tight rope is refined or coarsened.
+/// `shift` edges after the start: how a tight rope is refined or coarsened. Where the curve has no R_c
+/// its arcs are as short as other strands ask for, so that K_P has its type.
 ///
 /// ```
 /// use glam::DVec3;
@@ -134,13 +132,21 @@ pub fn coarsen(curve: &Curve, n: usize, shift: f64) -> Result<Curve> {
     Ok(sticks.curve())
 }
 
+/// K_P of an embedded curve, of its type: where that has no R_c the arcs are as short as strands ask for.
+fn inscribed(curve: &Curve, given: &Measures) -> Inscribed {
+    match given.r_c {
+        Some(_) => Inscribed::new(curve),
+        None => Inscribed::clear_of_strands(curve),
+    }
+}
+
 /// K_P of a curve, and what each component gets of `n` vertices.
 fn shared_out(curve: &Curve, n: usize) -> Result<(Inscribed, Vec<usize>)> {
     let needed = 3 * curve.components();
     if n < needed {
         return Err(Error::TooFew { n, needed });
     }
-    let inscribed = Inscribed::new(curve);
+    let inscribed = inscribed(curve, &measure(curve));
     let shares = share_out(n, &inscribed.lengths().collect::<Vec<_>>());
     Ok((inscribed, shares))
 }

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from sono import model as model
     from sono import plot as plot
     from sono._core import CurveError as CurveError
+    from sono.calls import descriptors as descriptors
     from sono.calls import forces as forces
     from sono.calls import identify as identify
     from sono.calls import measure as measure
@@ -37,11 +38,14 @@ if TYPE_CHECKING:
     from sono.curve import Curve as Curve
     from sono.curve import Forces as Forces
     from sono.curve import Measures as Measures
+    from sono.figures.export import export as export
+    from sono.figures.solids import Solid as Solid
     from sono.formats import FormatError as FormatError
     from sono.invariants import TooEntangledError as TooEntangledError
     from sono.naming import Identity as Identity
     from sono.naming import Verdict as Verdict
     from sono.searching import Minimum as Minimum
+    from sono.shape import Descriptors as Descriptors
     from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
     from sono.tightening import Settings as Settings
@@ -68,6 +72,10 @@ _HOMES = {
     "certify": "sono.certificates",
     "Comparison": "sono.comparison",
     "compare": "sono.comparison",
+    "Solid": "sono.figures.solids",
+    "export": "sono.figures.export",
+    "Descriptors": "sono.shape",
+    "descriptors": "sono.calls",
     "forces": "sono.calls",
     "identify": "sono.calls",
     "measure": "sono.calls",

@@ -33,6 +33,7 @@ __all__ = [
     "refine",
     "shortened",
     "simplify",
+    "writhe",
 ]
 
 _Curve: TypeAlias = Sequence[NDArray[np.float64]]
@@ -250,7 +251,7 @@ def pieces(gauss: _Gauss, most: int) -> list[list[_Gauss]]:
 def refine(components: _Curve, n: int) -> _Components:
     """Return the inscribed knot at `n` vertices, all chords of a component equal.
 
-    Raises `CurveError` for fewer than 3 vertices a component.
+    Raises `CurveError` where edges meet, and for fewer than 3 vertices a component.
     """
 
 def default_settings() -> str:
@@ -297,4 +298,11 @@ def simplify(components: _Curve) -> _Components:
     """Return the same curve with as few vertices as triangle moves leave, by exact isotopy.
 
     Raises `CurveError` where edges meet.
+    """
+
+def writhe(components: _Curve) -> tuple[float, float, float]:
+    """Return means over all directions of what is seen, in a time that grows with n^2.
+
+    The sum of the signs of the crossings of components with themselves, with each other, and the number of
+    all crossings. Raises `CurveError` where edges meet.
     """

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias, cast
 
-from sono import _core, curve, formats, naming, starts
+from sono import _core, curve, formats, naming, shape, starts
 from sono.curve import Curve as Curve
 from sono.curve import CurveLike, Forces, Measures, as_components
 from sono.formats.closing import WAYS, Close
@@ -22,6 +22,7 @@ from sono.naming import Identity, Verdict
 from sono.searching.minima import Minimum, merged
 from sono.searching.search import KEPT, Search
 from sono.searching.trials import FINE_EDGE, Source, Watch, finish, unwatched
+from sono.shape import Descriptors
 from sono.tightening import Method, Progress, Run, Tight
 from sono.tightening.once import best_of, changed
 from sono.tightening.settings import LEAST_DL, MOST, MOST_DL, TRIALS, Changes, Settings, whole
@@ -125,6 +126,19 @@ def measure(vertices: Rope) -> Measures:
     (4, 8.0)
     """
     return curve.measure(_components(vertices))
+
+
+def descriptors(vertices: Rope) -> Descriptors:
+    """Describe the shape of a curve: writhe, size, bends and contacts; see `Descriptors`.
+
+    All pairs of edges are summed: 2,000 vertices take a part of a second, 20,000 some seconds. Raises
+    `CurveError` for a curve that is not embedded.
+
+    >>> found = descriptors(start("3_1", known=True))
+    >>> round(found.writhe, 1), round(found.acn, 1), found.total_curvature > 4 * math.pi
+    (3.4, 4.3, True)
+    """
+    return shape.descriptors(_components(vertices))
 
 
 def forces(vertices: Rope) -> Forces:

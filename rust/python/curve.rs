@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::errors::{to_python, tried};
-use crate::{Curve, Result};
+use crate::{Curve, Result, check_embedded};
 
 /// A curve that comes from Python.
 pub type Given<'py> = Vec<PyReadonlyArray2<'py, f64>>;
@@ -40,7 +40,10 @@ pub fn arrays<'py>(py: Python<'py>, curve: &Curve) -> PyResult<Arrays<'py>> {
 /// K_P with `n` vertices in all at equal chords.
 #[pyfunction]
 pub fn refine<'py>(py: Python<'py>, components: Given<'py>, n: usize) -> PyResult<Arrays<'py>> {
-    changed(py, components, |curve| crate::refine(curve, n, 0.25))
+    changed(py, components, |curve| {
+        check_embedded(curve)?;
+        crate::refine(curve, n, 0.25)
+    })
 }
 
 /// The same curve with as few vertices as triangle moves leave, by exact isotopy.

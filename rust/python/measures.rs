@@ -18,6 +18,15 @@ pub fn measure<'py>(py: Python<'py>, components: Given<'py>) -> PyResult<Dict<'p
     measures(py, &tried(py, || check_embedded(&curve).map(|()| crate::measure(&curve)))?)
 }
 
+/// The mean over all directions of the signs of crossings, of components with themselves and with each
+/// other, and of the number of crossings.
+#[pyfunction]
+pub fn writhe(py: Python<'_>, components: Given<'_>) -> PyResult<(f64, f64, f64)> {
+    let curve = curve(components)?;
+    let found = tried(py, || check_embedded(&curve).map(|()| crate::writhe(&curve)))?;
+    Ok((found.own, found.between, found.crossings))
+}
+
 /// Measures by their names.
 pub fn measures<'py>(py: Python<'py>, of: &Measures) -> PyResult<Dict<'py>> {
     Ok(dict!(

@@ -41,7 +41,7 @@ mod _core {
     #[pymodule_export]
     use super::invariants::{crossings, determinant};
     #[pymodule_export]
-    use super::measures::measure;
+    use super::measures::{measure, writhe};
     #[pymodule_export]
     use super::polish::Polish;
     #[pymodule_export]

@@ -23,6 +23,7 @@ COMMANDS = {
     "compare": "Compare ropelengths with the published ones.",
     "completion": "Complete commands and knots in a shell.",
     "convert": "Write curves in another format.",
+    "export": "Write ropes as solids to be printed.",
     "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
     "plot": "Draw pictures of ropes and of tables.",

@@ -1,5 +1,5 @@
 """What the commands have done: jobs with their files, checkpoints, locks and rows, here or on a cluster.
 
-May import `curve`, `formats`, `invariants`, `naming`, `patience`, `printing`, `searching`, `starts`, `tables`
-and `tightening`.
+May import `curve`, `formats`, `invariants`, `naming`, `patience`, `printing`, `searching`, `shape`, `starts`,
+`tables` and `tightening`.
 """

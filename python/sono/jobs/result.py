@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from sono.curve import Measures
+from sono.curve import Components, Measures
+from sono.shape import descriptors
 from sono.tables import Row
 
 Show: TypeAlias = Callable[[float, str], None]
@@ -26,3 +27,10 @@ class Result:
 def as_row(name: str, file: str | None, measures: Measures, **more: Any) -> Row:
     """Make a row of the table."""
     return {"knot": name, "file": file, **measures.to_dict(), **more}
+
+
+def shape_of(curve: Components) -> dict[str, Any]:
+    """Return the descriptors of a curve as a row has them. Raises `CurveError`."""
+    found = descriptors(curve).to_dict()
+    eigenvalues = enumerate(found.pop("gyration"), 1)
+    return found | {f"gyration_{k}": value for k, value in eigenvalues}

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TextIO
 
 from sono.tables.base import CAPTION, TableWriter
-from sono.tables.columns import COLUMNS, DEFAULT, Row, Value, key_of
+from sono.tables.columns import COLUMNS, DEFAULT, SHAPE, Row, Value, key_of
 from sono.tables.delimited import Csv, Tsv
 from sono.tables.jsons import Json, JsonLines
 from sono.tables.latex import Latex
@@ -24,6 +24,7 @@ __all__ = [
     "COLUMNS",
     "DEFAULT",
     "FORMATS",
+    "SHAPE",
     "Row",
     "TableWriter",
     "Value",

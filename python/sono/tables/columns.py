@@ -46,6 +46,18 @@ COLUMNS = {
         Column("r_c", "R_c", "$R_c$", ".9f", 12),
         Column("length", "Length(P)", "$Length(P)$", ".6f", 12),
         Column("inscribed_length", "Length(K_P)", "$Length(K_P)$", ".6f", 12),
+        Column("writhe", "writhe", "$Wr$", ".6f", 11),
+        Column("self_writhe", "self-writhe", "self-writhe", ".6f", 11),
+        Column("acn", "ACN", "$ACN$", ".6f", 11),
+        Column("radius_of_gyration", "R_g", "$R_g$", ".6f", 11),
+        Column("gyration_1", "gyration 1", "$\\lambda_1$", ".6f", 11),
+        Column("gyration_2", "gyration 2", "$\\lambda_2$", ".6f", 11),
+        Column("gyration_3", "gyration 3", "$\\lambda_3$", ".6f", 11),
+        Column("diameter", "diameter", "diameter", ".6f", 11),
+        Column("total_curvature", "total curvature", "total curvature", ".6f", 15),
+        Column("total_torsion", "total torsion", "total torsion", ".6f", 13),
+        Column("max_curvature", "max. curvature", "max. curvature", ".6f", 14),
+        Column("contacts", "contacts", "contacts", "d", 8),
         Column("overlap", "overlap", "overlap", ".1e", 8),
         Column("residual", "residual", "residual", ".1e", 8),
         Column("mu", "mu", "$\\mu$", ".1e", 8),
@@ -88,6 +100,12 @@ COLUMNS = {
 }
 
 _KEYS = {name.casefold(): column.key for column in COLUMNS.values() for name in (column.header, column.key)}
+
+SHAPE = (
+    *("writhe", "self_writhe", "acn", "radius_of_gyration", "gyration_1", "gyration_2", "gyration_3"),
+    *("diameter", "total_curvature", "total_torsion", "max_curvature", "contacts"),
+)
+"""The descriptors of a shape."""
 
 DEFAULT = ("knot", "n", "dl", "l_p", "l_c", "l_a")
 

@@ -1,0 +1,177 @@
+"""`sono export FILE|NAME... -o PATH`: ropes as solids, for printers."""
+
+import os
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import click
+
+from sono.cli import options, places
+from sono.cli.each import each, rope_of
+from sono.cli.options import Function
+
+if TYPE_CHECKING:
+    from sono.figures.solids import Solid
+    from sono.formats import Close
+    from sono.jobs.sources import Source
+
+UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
+
+
+def _length(ctx: click.Context, param: click.Parameter, value: str) -> float:
+    """Return a length in millimetres."""
+    found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?) *([a-z]*)", value.strip().lower())
+    try:
+        number, unit = found.groups() if found else ("", "")
+        return float(number) * UNITS[unit]
+    except (ValueError, KeyError):
+        raise click.BadParameter(f"{value!r} is no length; give one such as 6mm, 0.6cm or 0.25in") from None
+
+
+def length(name: str, variable: str, default: str, help: str) -> Callable[[Function], Function]:
+    """Return an option that is a length, in millimetres."""
+    return click.option(
+        name, variable, metavar="LENGTH", default=default, show_default=True, callback=_length, help=help
+    )
+
+
+@click.command("export")
+@click.argument("given", metavar="FILE|NAME...", nargs=-1, required=True)
+@click.option(
+    "-o", "--output", metavar="PATH", required=True, help="File to write, or a FOLDER/ for several."
+)
+@click.option(
+    "--format",
+    "format_",
+    metavar="FORMAT",
+    help="stl, obj, ply, glb or 3mf.  [default: by the suffix, or stl]",
+)
+@length("--rope-diameter", "diameter", "6mm", "Scale of the print: strands of such a rope touch.")
+@length("--gap", "gap", "0.4mm", "Between strands, which are printed thinner by it.")
+@length("--tolerance", "tolerance", "0.02mm", "How far facets may be off the round tube.")
+@options.close
+@options.force
+@click.option("-q", "--quiet", is_flag=True, help="No messages but errors.")
+def command(
+    given: tuple[str, ...],
+    output: str,
+    format_: str | None,
+    close: "Close | None",
+    force: bool,
+    quiet: bool,
+    **lengths: float,
+) -> None:
+    """Write ropes as closed tubes for a 3D printer: .stl, .obj, .ply, .glb or .3mf, in millimetres.
+
+    A FILE is a curve of any scale, - is standard input. A NAME is the rope that the atlas has of the knot.
+    Lengths are in mm, or as their unit says: 6mm, 0.6cm, 0.25in.
+
+    The rope is laid along the curve's inscribed knot, scaled so that strands of the rope's diameter just
+    touch. They are printed thinner by the gap, which they keep everywhere, so that they do not fuse. The
+    components of a link are bodies of their own, but for .stl and .ply, which have one. All but .3mf needs
+    the extra sono[mesh].
+
+    \b
+      sono export 4_1 -o figure8.stl --rope-diameter 6mm
+      sono export 6^3_2 tight.txt -o prints/ --format 3mf --gap 0.5mm
+    """
+    maker = _Maker(output, _format(output, format_), _checked(**lengths), force)
+
+    def export(source: "Source") -> None:
+        path, solid = maker.written(source)
+        if not quiet:
+            options.complain(f"{path}: {_told(solid)}")
+
+    if places.names_one_file(output):
+        if len(given) > 1:
+            raise click.UsageError(f"{output} is one file; name a folder, {output}/, for {len(given)} ropes")
+    else:
+        places.make_folder(output)
+    sys.exit(each(given, close, export))
+
+
+def _format(output: str, named: str | None) -> str:
+    """Tell in which format to write."""
+    from sono.figures import solidfiles
+    from sono.formats import FormatError
+
+    if named is None and not places.names_one_file(output):
+        return "stl"
+    try:
+        return solidfiles.by_suffix(f"--format .{named.lower()}" if named else output)
+    except FormatError as error:
+        raise click.UsageError(str(error)) from error
+
+
+def _checked(diameter: float, gap: float, tolerance: float) -> tuple[float, float, float]:
+    """Refuse lengths that make no rope."""
+    from sono.figures.solids import check
+
+    try:
+        check(diameter, gap, tolerance)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
+    return diameter, gap, tolerance
+
+
+def _told(solid: "Solid") -> str:
+    """Say what is printed."""
+    size = " x ".join(f"{edge:.1f}" for edge in solid.size)
+    rope = f"{solid.length:.0f} mm of rope {2 * solid.radius:.3g} mm thick"
+    return f"{size} mm, {rope}, {solid.triangles:,} triangles"
+
+
+@dataclass(frozen=True)
+class _Maker:
+    """Makes solids of such lengths, in millimetres, and writes each to a file of its own."""
+
+    output: str
+    format: str
+    lengths: tuple[float, float, float]
+    force: bool
+    done: set[str] = field(default_factory=set)
+
+    def written(self, source: "Source") -> "tuple[str, Solid]":
+        """Write the solid of a curve; return the file's name and the solid. Raises `FormatError`."""
+        from sono.figures import solidfiles
+
+        path = self._path(source)
+        solid = self._made(source)
+        solidfiles.write(path, solid, self.format)
+        self.done.add(path)
+        return path, solid
+
+    def _path(self, source: "Source") -> str:
+        """Return the name of a file that may be written. Raises `FormatError`."""
+        from sono.formats import FormatError
+
+        path = self.output
+        if not places.names_one_file(path):
+            path = os.path.join(path, f"{source.stem}.{self.format}")
+        if path in self.done:
+            raise FormatError(
+                f"{source}: {path} is written already; -o FOLDER/ takes several, of other names"
+            )
+        if os.path.isfile(path) and not self.force:
+            raise FormatError(f"{path} exists; --force overwrites it")
+        return path
+
+    def _made(self, source: "Source") -> "Solid":
+        """Make the solid of a curve. Raises `FormatError`."""
+        # Imported here, since numpy would make --help wait.
+        from sono._core import CurveError
+        from sono.figures.solids import solid
+        from sono.formats import FormatError
+        from sono.jobs.curvefiles import located
+        from sono.patience import patiently
+
+        curve = rope_of(source)
+        try:
+            return patiently(lambda: solid(curve.components, *self.lengths))
+        except CurveError as error:
+            raise located(error, curve) from error
+        except ValueError as error:
+            raise FormatError(f"{source}: {error}") from error

@@ -1,0 +1,43 @@
+"""What `sono.export` does: a rope as a file for a printer."""
+
+import os
+from typing import cast
+
+from sono.calls import Rope, start
+from sono.curve import CurveLike, as_components
+from sono.figures import solidfiles
+from sono.figures.solids import Solid, solid
+
+DIAMETER, GAP, TOLERANCE = 6.0, 0.4, 0.02
+"""Of a rope that is printed, in millimetres: a nozzle is 0.4 wide, a layer 0.1 to 0.2 high."""
+
+
+def export(
+    path: str | os.PathLike[str],
+    rope: Rope,
+    *,
+    rope_diameter: float = DIAMETER,
+    gap: float = GAP,
+    tolerance: float = TOLERANCE,
+) -> Solid:
+    """Write a rope as closed tubes, to be printed: .stl, .obj, .ply, .glb or .3mf; return them.
+
+    A name stands for the atlas's rope of the knot. Lengths are in millimetres. The rope is laid along the
+    inscribed knot K_P of the curve, so that strands of `rope_diameter` just touch, and is thinner by the
+    `gap`, which they then keep. No facet is further than the `tolerance` from the smooth tube.
+
+    Raises `FormatError`, a `ValueError`, for another suffix, where the file cannot be written, and where
+    trimesh is missing, which comes with sono[mesh]; `CurveError` for a curve that is not embedded;
+    `ValueError` for other lengths, and for a name of which the atlas has no rope.
+
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "hopf.3mf")
+    >>> solid = export(path, "Hopf", rope_diameter=5)
+    >>> path.exists(), len(solid.components), round(solid.radius, 3)
+    (True, 2, 2.3)
+    """
+    format = solidfiles.by_suffix(os.fspath(path))
+    curve = start(rope, known=True) if isinstance(rope, str) else rope
+    made = solid(as_components(cast("CurveLike", curve)), rope_diameter, gap, tolerance)
+    solidfiles.write(os.fspath(path), made, format)
+    return made

@@ -1,0 +1,155 @@
+"""What the shape of a curve is told by, besides its ropelength: descriptors. On the ground floor, by `curve`.
+
+May import nothing of sono but the core, `curve`, and what results have in common.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sono import _core
+from sono.curve import Components, CurveLike, Floats, Measures, as_components, measure
+from sono.records import Record
+
+TOUCHING = 1 + 5e-5
+"""Of 2 R_s: up to this distance vertices are in contact, as they are for `sono.forces`."""
+
+STRAIGHT = 1e-6
+"""Angle by which a curve must turn for its plane to mean anything."""
+
+BLOCK = 1 << 22
+"""Pairs of vertices that are looked at in one go."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Descriptors(Record):
+    """What tells the shape of a curve: lengths in the unit of its vertices, angles in radians.
+
+    Of the crossings that are seen, in the mean over all directions, `writhe` is the sum of signs, +1 for a
+    right-handed one, and `acn`, the average crossing number, the number; both are exact for the polygon. For
+    a link that is of all crossings; `self_writhe` is of those of components with themselves, and the rest of
+    the writhe twice the sum of the linking numbers.
+
+    `radius_of_gyration` is the root of the mean squared distance from the centre of mass, the curve being a
+    wire of even weight, and `gyration` are the eigenvalues of its gyration tensor, the largest first, whose
+    sum is its square. `diameter` is the largest distance of two vertices. `total_curvature` is the sum of all
+    turning angles, `total_torsion` that of the angles, pi/2 at most, between the planes of each vertex with
+    its neighbours and of the next one, where the curve is not straight. `max_curvature` is 1/MinRad.
+    `contacts` are the pairs of vertices that are 2 R_s apart, within 0.005 %, along no arc of their component
+    shorter than pi MinRad less its longest edge.
+
+    Sources: K. Klenin, J. Langowski, Biopolymers 54 (2000) 307 for the writhe of polygons; J. Milnor, Ann. of
+    Math. 52 (1950) 248 for total curvature.
+
+    >>> import sono
+    >>> found = sono.descriptors([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
+    >>> found.writhe, round(found.total_curvature / math.pi, 9), round(found.diameter**2, 9)
+    (0.0, 2.0, 8.0)
+    """
+
+    writhe: float
+    self_writhe: float
+    acn: float
+    radius_of_gyration: float
+    gyration: tuple[float, float, float]
+    diameter: float
+    total_curvature: float
+    total_torsion: float
+    max_curvature: float
+    contacts: int
+
+
+def descriptors(vertices: CurveLike) -> Descriptors:
+    """Describe the shape of a curve, in a time that grows with n^2: see `sono.descriptors`."""
+    curve = as_components(vertices)
+    own, between, crossings = _core.writhe(curve)
+    measures = measure(curve)
+    diameter, contacts = _pairs(curve, measures)
+    gyration = _gyration(curve)
+    return Descriptors(
+        writhe=own + between,
+        self_writhe=own,
+        acn=crossings,
+        radius_of_gyration=math.sqrt(sum(gyration)),
+        gyration=gyration,
+        diameter=diameter,
+        total_curvature=sum(float(_turned(component).sum()) for component in curve),
+        total_torsion=sum(map(_torsion, curve)),
+        max_curvature=1 / measures.min_rad,
+        contacts=contacts,
+    )
+
+
+def _gyration(curve: Components) -> tuple[float, float, float]:
+    """Return the eigenvalues of the second moments of a wire about its centre."""
+    start = np.concatenate(curve)
+    end = np.concatenate([np.roll(component, -1, axis=0) for component in curve])
+    weight = np.linalg.norm(end - start, axis=1)
+    weight /= weight.sum()
+    centre = weight @ (start + end) / 2
+    middle, half = (start + end) / 2 - centre, (end - start) / 2
+    moments = (weight[:, None] * middle).T @ middle + (weight[:, None] * half).T @ half / 3
+    x, y, z = np.linalg.eigvalsh(moments)[::-1].clip(min=0).tolist()
+    return x, y, z
+
+
+def _edges(component: Floats) -> tuple[Floats, Floats]:
+    """Return the unit vectors of the edges before and after each vertex."""
+    after = np.roll(component, -1, axis=0) - component
+    after = after / np.linalg.norm(after, axis=1)[:, None]
+    return np.roll(after, 1, axis=0), after
+
+
+def _turned(component: Floats) -> Floats:
+    """Return the angle by which a polygon turns at each vertex."""
+    before, after = _edges(component)
+    sines = np.linalg.norm(np.cross(before, after), axis=1)
+    angles: Floats = np.arctan2(sines, np.sum(before * after, axis=1))
+    return angles
+
+
+def _torsion(component: Floats) -> float:
+    """Return the sum of the angles between planes that follow each other."""
+    planes = np.cross(*_edges(component))[_turned(component) > STRAIGHT]
+    following = np.roll(planes, -1, axis=0)
+    sines = np.linalg.norm(np.cross(planes, following), axis=1)
+    return float(np.arctan2(sines, np.abs(np.sum(planes * following, axis=1))).sum())
+
+
+def _pairs(curve: Components, measures: Measures) -> tuple[float, int]:
+    """Return the largest distance of vertices, and how many pairs are in contact."""
+    points = np.concatenate(curve)
+    points = points - points.mean(axis=0)
+    squares = np.sum(points**2, axis=1)
+    largest, contacts = 0.0, 0
+    for rows in np.array_split(np.arange(len(points)), len(points) ** 2 // BLOCK + 1):
+        apart = squares[rows, None] + squares - 2 * points[rows] @ points.T
+        largest = max(largest, float(apart.max()))
+        near = np.argwhere(apart <= (2 * measures.r_s * TOUCHING) ** 2)
+        pairs = np.stack([rows[near[:, 0]], near[:, 1]], axis=1)
+        contacts += int(_apart(curve, pairs[pairs[:, 0] < pairs[:, 1]]).sum())
+    return math.sqrt(largest), contacts
+
+
+def _apart(curve: Components, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Tell which pairs of vertices must keep their distance: the rule of SR, as the core has it."""
+    places = list(_places(curve))
+    of, at, around, least = (np.concatenate(column) for column in zip(*places, strict=True))
+    one, other = pairs.T
+    along = np.abs(at[one] - at[other])
+    far = np.minimum(along, around[one] - along) >= least[one]
+    apart: NDArray[np.bool_] = far | (of[one] != of[other])
+    return apart
+
+
+def _places(curve: Components) -> Iterator[tuple[Floats, Floats, Floats, Floats]]:
+    """For the vertices of each component: its number, where they are along it, its length, and the rule."""
+    for c, component in enumerate(curve):
+        edges = np.linalg.norm(np.roll(component, -1, axis=0) - component, axis=1)
+        least = math.pi * measure([component]).min_rad - edges.max()
+        at = np.cumsum(edges) - edges
+        same = np.ones(len(edges))
+        yield c * same, at, edges.sum() * same, least * same
