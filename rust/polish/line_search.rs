@@ -1,4 +1,16 @@
-//! How far along a Newton step constraints and the barrier function allow to go.
+//! How far along a Newton step constraints, the barrier function and the strands allow to go.
+//!
+//! A step moves all beads straight, from where the rope is to where it shall be. **No strand passes another**
+//! by the theorem of [`crate::passage`], whose conditions are looked at on each step by themselves. They need
+//! not be concluded from the constraints, which do not imply all of them: that edges and contacts keep what
+//! they have is known along the whole step, as their courses are quadratic, but of the least length of an
+//! edge, and of a bend on a rope whose required edges get shorter, only what it is at the end. The theorem asks
+//! for the distances of all beads that count, k or more apart along the rope, k being the `least` of
+//! their component. Those that [`Polish::look_around`] lists are looked at one by one. Others were at least
+//! 2 + 2.5 `way` apart, and no bead moves further than `way`, so they stay more than 2 apart. As k only grows,
+//! a pair that counted and was not listed is none that is forgotten: it is no longer asked for.
+//!
+//! Between steps nothing moves: a new beginning scales the best rope, which was one of these.
 
 use super::barrier::longest_step;
 use super::newton::Step;
@@ -6,6 +18,7 @@ use super::problem::{Multipliers, Surroundings, Unknowns};
 use super::settings::Settings;
 use super::term::Term;
 use super::{Best, Polish};
+use crate::passage::margin;
 
 /// Rounding errors of the barrier function, as a share of it.
 const NOISE: f64 = 1e-14;
@@ -32,20 +45,25 @@ impl Polish {
     }
 
     /// The share of the step, at most `most`, that lowers the barrier function, and where it leads.
-    fn search(&self, step: &Step, around: &Surroundings, most: f64) -> Option<(f64, Unknowns)> {
+    fn search(&mut self, step: &Step, around: &Surroundings, most: f64) -> Option<(f64, Unknowns)> {
         let Surroundings { terms, bystanders } = around;
         let Settings { most_used, least_descent, .. } = self.settings;
-        let (rope, barrier) = (&self.rope, self.barrier());
-        let pairs = self.contacts.iter().chain(bystanders).copied();
+        let barrier = self.barrier();
+        let Self { rope, contacts, passages, least, .. } = self;
+        let before = rope.curve.vertices();
+        let pairs = contacts.iter().chain(bystanders).copied();
         let merit = |rope: &Unknowns| barrier.merit(rope, pairs.clone());
         let others = bystanders.iter().map(|&pair| rope.contact(pair));
         let all = terms.iter().copied().chain(others);
         let mut a = all.fold(most, |a, t| a.min(longest_step(&t, &step.to, most_used)));
-        let before = merit(rope);
+        let highest = merit(rope);
         for _ in 0..MOST_HALVINGS {
             let moved = rope.moved(a, &step.to);
             // False where a bend's course, cubic in l, has led out after all: the merit is NaN.
-            if merit(&moved) <= before + least_descent * a * step.slope + NOISE * before.abs() {
+            let is_lower =
+                merit(&moved) <= highest + least_descent * a * step.slope + NOISE * highest.abs();
+            let found = || margin(before, &moved.curve, least, pairs.clone(), 2.);
+            if is_lower && passages.may(found()) {
                 return Some((a, moved));
             }
             a *= 0.5;

@@ -11,6 +11,7 @@ use crate::geometry::neighbours::for_each_close_pair;
 use crate::geometry::separation::Separation;
 use crate::measures::measure;
 use crate::outcome::Outcome;
+use crate::passage::Passages;
 use crate::resample::{refine, resampled, rope_curve};
 
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
@@ -51,6 +52,7 @@ impl Polish {
             way: (2. * dl * dl).min(longest_way),
             newton: Newton::default(),
             iterations: 0,
+            passages: Passages::default(),
             residual: f64::MAX,
             excess: f64::MAX,
             attempt: Attempt { first_mu: 0., iterations: 0, l_p: 0. },
