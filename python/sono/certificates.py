@@ -18,7 +18,7 @@ import numpy as np
 
 from sono import _core
 from sono.calls import Rope, start
-from sono.curve import Components, CurveLike, as_components
+from sono.curve import CurveLike, as_components, polygon
 from sono.records import Record
 
 FORMAT, VERSION = "sono certificate", 1
@@ -124,20 +124,12 @@ def certify(vertices: Rope) -> Certificate:
         length=up(bound["inscribed_length"]),
         l_c=up(bound["l_c"]),
         decided_by=Decider(bound["condition"], tuple(bound["vertices"])),
-        polygon=_polygon(components),
+        polygon=polygon(components),
     )
 
 
 def _rounded_up(digits: int) -> Context:
     return Context(digits, ROUND_CEILING)
-
-
-def _polygon(components: Components) -> str:
-    """Return what tells these vertices from others."""
-    found = hashlib.sha256()
-    for component in components:
-        found.update(component.astype("<f8").tobytes() + b"end of component")
-    return found.hexdigest()
 
 
 def _polygon_in(data: bytes) -> str | None:
@@ -154,6 +146,6 @@ def _polygon_in(data: bytes) -> str | None:
                 parts[-1].append(list(map(float, cells)))
             elif not comment:
                 parts.append([])
-        return _polygon([np.array(part) for part in parts if part])
+        return polygon([np.array(part) for part in parts if part])
     except ValueError:
         return None

@@ -95,12 +95,29 @@ mod tests {
     use super::*;
     use crate::geometry::curve::Curve;
 
-    #[test]
-    fn a_multiplier_that_would_reach_0_does_not_hold_up_the_others() {
+    fn circle() -> Polish {
         let angle = |i| TAU * f64::from(i) / 40.;
         let vertex = |i| DVec3::new(angle(i).cos(), angle(i).sin(), 0.);
         let circle = Curve::new(vec![(0..40).map(vertex).collect()]).unwrap();
-        let mut polish = Polish::new(&circle, 40, false, 0, Settings::default()).unwrap();
+        Polish::new(&circle, 40, false, 0, Settings::default()).unwrap()
+    }
+
+    #[test]
+    fn a_step_on_which_edges_vanish_is_not_taken() {
+        // All beads go through the centre to the other side, where all constraints are as they were.
+        let mut polish = circle();
+        let around = polish.look_around();
+        let mut to = Direction::lengthening(&polish.rope.curve, 0.);
+        to.beads = polish.rope.curve.vertices().iter().map(|v| -2. * *v).collect();
+        let step = Step { to, dz: polish.z.map(|_| 0.), slope: 0. };
+        let (share, _) = polish.search(&step, &around, 1.).unwrap();
+        assert!(share < 0.06, "edges of {} of their length are too short", 1. - 2. * share);
+        assert!(polish.passages.refused > 0 && polish.passages.shown == 1);
+    }
+
+    #[test]
+    fn a_multiplier_that_would_reach_0_does_not_hold_up_the_others() {
+        let mut polish = circle();
         let around = polish.look_around();
         let mut dz = polish.z.map(|z| 0.5 * z);
         dz.edges[0] = -1e9;

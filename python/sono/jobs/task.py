@@ -19,6 +19,7 @@ from sono.invariants import fingerprint
 from sono.jobs import checkpoints, contacts
 from sono.jobs.curvefiles import free_name, located, measured, names_of_best, rope_in
 from sono.jobs.order import Order, judged, made_from, rope_row, shown
+from sono.jobs.record import Records
 from sono.jobs.result import Result
 from sono.tables import Row
 from sono.tightening import KnotTypeError, Progress, Run, Stopped, Tight
@@ -52,6 +53,7 @@ class Task:
         self.file = file
         self.todo = todo
         self.identity = [made_from(job, file), *job.outputs]
+        self.records = Records(job, file) if job.record else None
         self.told: list[str] = []
         self.failed: dict[Target, str] = {}
         self.run = self.restored() or self.begun()
@@ -169,6 +171,8 @@ class Task:
             # The file has every digit; reading it again would only make a stop wait.
             if not is_stream(output) and status != STOPPED:
                 measures = measured(output)[1]
+            if self.records and not is_stream(output):
+                self.records.write(output, tight, status)
         except FormatError as error:
             unwritten = str(error)
         work = {"trials": _trials(tight), "seconds": tight.seconds} | {
