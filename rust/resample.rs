@@ -5,28 +5,28 @@
 //!
 //! 1. *P -> K_P.* Where R_c is measured, by the theorem of `docs/theorem.md`. Else the curve goes through
 //!    [`Inscribed::clear_of_strands`], which has its own proof.
-//! 2. *K_P -> chords no longer than R_c.* An arc of K_P above a chord c has a length l with 2 R_c sin(l/2 R_c)
-//!    <= c, so it turns by l/R_c <= pi/3; the walk along K_P looks no further than 3 c < pi R_c, where no other
-//!    l has it. Let R_c = 1, T be the tangent at a place a of the arc and w the chord. As all tangents of the
-//!    arc are within pi/3 of T, w.T > 0, and the ends of the chord are on both sides of the plane normal to T
-//!    at a: it meets the chord once, in x say. With N the direction from a to x, the ends are at most
-//!    1 - cos l from a along N, as a tangent turns from T to N by l at most; so |x - a| <= 1 - cos(pi/3) = 1/2.
-//!    So a can go straight to x within the disk normal to K_P at a. These disks do not meet, no two places do
-//!    either, and all the time the curve is embedded.
+//! 2. *K_P -> chords above which no arc is longer than 1.5 R_c.* Let R_c = 1, and T be the tangent at a place
+//!    a of an arc of the length l <= 1.5 above a chord w. All tangents of the arc are within l < pi/2 of T, so
+//!    w.T > 0, and the ends of the chord are on both sides of the plane normal to T at a: it meets the chord
+//!    once, in x say. With N the direction from a to x, the ends are at most 1 - cos l from a along N, as a
+//!    tangent turns from T to N by its distance from a at most; so |x - a| <= 1 - cos 1.5 < 0.93. So a can go
+//!    straight to x within the disk of radius 1 normal to K_P at a. These disks do not meet, so no two places do,
+//!    and all the time the curve is embedded.
 //! 3. *K_P -> longer chords.* First as in 2, then vertices are removed one by one ([`coarsen`]), each by an
 //!    exact isotopy.
 //! 4. *A curve without R_c -> chords c* ([`rope_curve`]). The polygon Q of chords is measured: its radii M and
-//!    half distances are r_s >= c/0.55 at least. Let each place of the curve K go straight to the place of its
+//!    half distances are at least r_s >= c/0.55. Let each place of the curve K go straight to the place of its
 //!    chord that is as far along, as shares of both. Directions stay within [`MOST_TURN`] = 0.7 of that of the
-//!    chord, and places within c/5 of it. Two places of the moving curve are not one: if their vertices
-//!    count, they are 2 r_s - c - 2 c/5 > 2 c apart at least; if they do not, and lie D < (pi - 1.4) M apart
-//!    along Q, Q turns by D/M at most between them, so all directions are within (D/M)/2 + 0.7 < pi/2 of one,
-//!    along which the way advances; and if D is more, up to pi M, they are at least 2 M sin(D/2M) > 1.5 M >
-//!    2.7 c apart on Q, but for a chord at each end: more than 0.7 c > 2 c/5.
+//!    chord, and places within c/5 of it. Two places of the moving curve are not one. If the vertices of Q
+//!    that are nearest to their chords' places count, they are 2 r_s - c - 2 c/5 > 2 c apart at least. Else let
+//!    D <= pi M + 2 c be the length of the chords from the one to the other, which turn by c/M at most at each
+//!    vertex, hence are within D/2M of one direction. For D < (pi - 1.4) M all directions are within
+//!    D/2M + 0.7 < pi/2 of it, so along it the way advances. For larger D the chords advance along it by
+//!    2 M sin(D/2M) > 1.5 M at least, but for the first and the last by more than 1.5 M - 2 c > 0.7 c > 2 c/5.
 //!
 //! Rounding moves sampled vertices by some 1e-15 of the curve's size, and 2 to 4 leave shares of R_c or c. In 1
 //! the theorem's R > S/sqrt 2 is compared as rounded; `sono certify` proves it where it holds.
-//!
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -34,7 +34,7 @@ use crate::beads::LONGEST_EDGE;
 use crate::error::{Error, Result};
 use crate::geometry::curve::Curve;
 use crate::geometry::embedded::check_embedded;
-use crate::geometry::inscribed::Inscribed;
+use crate::geometry::inscribed::{Above, Inscribed};
 use crate::geometry::sticks::Sticks;
 use crate::measures::{Measures, measure};
 
@@ -43,6 +43,10 @@ const LOOSE_EDGE: f64 = 0.5;
 /// Largest angle by which K_P may turn in all above a chord: it then stays within a fifth of the
 /// chord's length from it, and has no room for a knot.
 const MOST_TURN: f64 = 0.7;
+/// From this edge length on, a rope is not resampled by taking chords, but straightened; so it is where an
+/// arc of K_P above a chord is longer than this, in units of R_c.
+const LONGEST_CHORD: f64 = 1.2;
+const LONGEST_ARC: f64 = 1.5;
 /// Beads of a rope that is made of a curve which is none.
 pub const MOST_BEADS: usize = 20_000;
 
@@ -66,7 +70,7 @@ pub fn rope_curve(curve: &Curve, most: usize) -> Result<Curve> {
             return Err(Error::TooThin { limit: most });
         }
         let shares = share_out((n as usize).max(12 * lengths.len()), &lengths);
-        let (sampled, turn) = inscribed.sample(&shares, 0.);
+        let (sampled, Above { turn, .. }) = inscribed.sample(&shares, 0.);
         let r_s = measure(&sampled).r_s;
         if dl <= 1.1 * LOOSE_EDGE * r_s && turn <= MOST_TURN {
             return Ok(sampled);
@@ -113,9 +117,10 @@ fn rope_on(curve: &Curve, given: &Measures, n: usize, shift: f64) -> Result<Curv
 /// # Errors
 /// Those of [`coarsen`].
 pub fn on_chords(curve: &Curve, given: &Measures, n: usize, shift: f64) -> Result<(Curve, f64)> {
-    let refined = refine(curve, n, shift)?;
-    let longest = refined.longest_edges().fold(0., f64::max);
-    if given.r_c.is_some_and(|r_c| longest <= r_c) {
+    let (inscribed, shares) = shared_out(curve, n)?;
+    let (refined, above) = inscribed.sample(&shares, shift);
+    let is_fine = given.l_p / (n as f64) < LONGEST_CHORD;
+    if is_fine && given.r_c.is_some_and(|r_c| above.arc <= LONGEST_ARC * r_c) {
         let r_s = measure(&refined).r_s;
         return Ok((refined, r_s));
     }
@@ -129,7 +134,7 @@ fn longest_mean_edge(curve: &Curve) -> f64 {
 
 /// K_P sampled with `n` vertices in all at equal chords, in the curve's own unit, the first vertex
 /// `shift` edges after the start: how a tight rope is refined. It keeps its type where it has an R_c, and
-/// edges are no longer than that.
+/// edges are not much longer than that.
 ///
 /// ```
 /// use glam::DVec3;

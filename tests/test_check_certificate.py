@@ -408,8 +408,8 @@ def test_pairs_by_arcs_are_all_pairs(seed: int, same: bool) -> None:
     }
     assume(squares)
     least = min(squares.values())
-    assert checker.too_close(one, other, least) is None
-    i, j, apart = checker.too_close(one, other, least + 1) or (0, 0, -1)
+    assert not list(checker.nearer(one, other, least))
+    i, j, apart = next(checker.nearer(one, other, least + 1), (0, 0, -1))
     assert apart == least == squares[i, j]
 
 

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from sono.naming import Identity as Identity
     from sono.naming import Verdict as Verdict
     from sono.searching import Minimum as Minimum
+    from sono.thickness import Thickness as Thickness
+    from sono.thickness import sharpen as sharpen
     from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
     from sono.tightening import Settings as Settings
@@ -64,6 +66,8 @@ _HOMES = {
     "Minimum": "sono.searching",
     "Certificate": "sono.certificates",
     "certify": "sono.certificates",
+    "Thickness": "sono.thickness",
+    "sharpen": "sono.thickness",
     "Comparison": "sono.comparison",
     "compare": "sono.comparison",
     "forces": "sono.calls",

@@ -78,7 +78,7 @@ class Certificate(Record):
         vertices in plain rows of x y z.
         """
         data = Path(file).read_bytes()
-        if _polygon_in(data) != self.polygon:
+        if polygon_in(data) != self.polygon:
             name = os.fspath(file)
             raise ValueError(f"{name}: does not hold these vertices in plain rows of x y z; sono.write does")
         figures = self.to_dict()
@@ -132,7 +132,7 @@ def _rounded_up(digits: int) -> Context:
     return Context(digits, ROUND_CEILING)
 
 
-def _polygon_in(data: bytes) -> str | None:
+def polygon_in(data: bytes) -> str | None:
     """Tell the vertices in the bytes of a file, if those are plain rows of x y z and nothing else.
 
     Read as simply as a checker may do it: cells between spaces or commas, # before comments, a blank line

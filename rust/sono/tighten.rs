@@ -41,7 +41,7 @@ use crate::geometry::curve::Curve;
 use crate::measures::{Measures, measure};
 use crate::outcome::Outcome;
 use crate::passage::Passages;
-use crate::resample::refine;
+use crate::resample::on_chords;
 use crate::sono::best::Best;
 use crate::sono::rope::{Rope, Violation};
 use crate::sono::settings::Settings;
@@ -234,12 +234,14 @@ impl Tightener {
     fn take_in_slack(&mut self) {
         self.rope.confirm();
         let curve = self.rope.curve();
-        let slack = measure(curve).r_s > 1. + SLACK;
+        let given = measure(curve);
+        let slack = given.r_s > 1. + SLACK;
         if self.rope.dl() < TOO_FINE {
             // A component is no shorter than 2 pi.
             let n = ((self.rope.length() / LOOSE) as usize).max(12 * curve.components());
-            let refined = refine(curve, n, 0.25).expect("enough beads");
-            self.rope = self.rope.followed_by(refined);
+            if let Ok((fewer, _)) = on_chords(curve, &given, n, 0.25) {
+                self.rope = self.rope.followed_by(fewer);
+            }
         } else if slack {
             self.rope = self.rope.followed_by(curve.clone());
         } else if self.met.overlap.max(self.met.curvature) < LIGHT {

@@ -79,6 +79,14 @@ def check(output: str) -> None:
         raise formats.FormatError(f"{output}: its record {path} {why}: --force starts anew")
 
 
+def remove(path: str) -> None:
+    """Remove a rope's file, and the record that is of it. Raises `OSError`."""
+    with suppress(formats.FormatError):
+        check(path)
+        os.unlink(record_beside(path))
+    os.unlink(path)
+
+
 COMPARED = ("linking", "signatures", "alexander")
 
 

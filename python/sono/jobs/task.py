@@ -16,10 +16,9 @@ from sono.curve import measure
 from sono.formats import FormatError, VertexFile, is_stream
 from sono.formats.ropefile import SETTLED, STOPPED, STUCK, TIGHT, Header, Made
 from sono.invariants import fingerprint
-from sono.jobs import checkpoints, contacts
+from sono.jobs import checkpoints, contacts, record
 from sono.jobs.curvefiles import free_name, located, measured, names_of_best, rope_in
 from sono.jobs.order import Order, judged, made_from, rope_row, shown
-from sono.jobs.record import Records
 from sono.jobs.result import Result
 from sono.tables import Row
 from sono.tightening import KnotTypeError, Progress, Run, Stopped, Tight
@@ -53,7 +52,7 @@ class Task:
         self.file = file
         self.todo = todo
         self.identity = [made_from(job, file), *job.outputs]
-        self.records = Records(job, file) if job.record else None
+        self.records = record.Records(job, file) if job.record else None
         self.told: list[str] = []
         self.failed: dict[Target, str] = {}
         self.run = self.restored() or self.begun()
@@ -191,7 +190,7 @@ class Task:
                 unfinished = header.status == STOPPED
                 same = unfinished and fingerprint(file.components) == fingerprint(tight.curve)
                 if same and (measures.l_c or math.inf) >= longer:
-                    os.unlink(path)
+                    record.remove(path)
 
     def begun(self) -> Run:
         """Return the run at its beginning."""
