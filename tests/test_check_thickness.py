@@ -127,5 +127,9 @@ def test_where_nothing_is_sharper(folder: Path, sono: Sono) -> None:
         package.sharpen(square)
     t = 2 * np.pi * np.arange(40) / 40
     circle = np.column_stack([np.cos(t), np.sin(t), 0 * t])  # as sharp a bend as there may be, all round
-    sharp = package.sharpen(circle)
-    assert 2 * np.pi < sharp.l_k < package.certify(circle).l_c
+    with pytest.raises(ValueError, match="no sharper bound is proven"):
+        package.sharpen(circle)
+    formats.write("circle.txt", [circle])
+    result = sono("certify", "--sharp", "circle.txt")
+    assert (result.exit_code, result.stderr.count("\n")) == (1, 1)
+    assert "circle.txt: no sharper bound" in result.stderr

@@ -1,7 +1,7 @@
 """The command line: one module a command, imported when it is used.
 
-May import `certificates`, `check_certificate`, `curve`, `formats`, `invariants`, `jobs`, `naming`,
-`patience`, `printing`, `starts`, `tables` and `tightening`.
+May import `certificates`, `check_certificate`, `check_thickness`, `curve`, `formats`, `invariants`, `jobs`,
+`naming`, `patience`, `printing`, `starts`, `tables`, `thickness` and `tightening`.
 """
 
 import io

@@ -70,7 +70,7 @@ def command(
         raise click.UsageError("give --json or -o FOLDER, not both")
     if output:
         places.make_folder(output)
-    if sharp and "certified" in shown.columns:
+    if sharp and "certified" in shown.columns and "sharp" not in shown.columns:
         shown.columns.insert(shown.columns.index("certified") + 1, "sharp")
     sys.exit(_certified(given, close, _Maker(output, force, sharp), as_json, shown))
 
