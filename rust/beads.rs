@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// Edges must be shorter: with edges of sqrt 8 R strands fit between beads.
 pub const LONGEST_EDGE: f64 = 2.3;
 /// Shortest edge that the polish allows, as a share of the longest that there may be: see
-/// [`crate::sono::passage`] for why.
+/// [`crate::passage`] for why.
 pub const SHORTEST_EDGE: f64 = 0.9;
 /// From this edge length on the index rule, not the thickness of the rope, limits how sharp it turns.
 pub const COARSE: f64 = 1.235;

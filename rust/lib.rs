@@ -3,7 +3,7 @@
 //! **Curve -> measures** is one road, **curve -> loose curve -> rope -> sweeps of SONO -> Newton steps of
 //! the polish -> tight curve** the other. The radius of a rope is R = 1, and ropelength is length over
 //! radius. Dependencies point one way only:
-//! `error <- geometry <- measures, writhe, certify, invariants, beads, outcome <- resample, loosening <- sono, polish <- python`.
+//! `error <- geometry <- measures, writhe, certify, invariants, beads, outcome, passage <- resample, loosening <- sono, polish <- python`.
 //! `sono` and `polish` do not know each other; only `python` knows of Python. `diagrams` of knots know of
 //! no curves.
 
@@ -16,6 +16,7 @@ pub mod invariants;
 pub mod loosening;
 pub mod measures;
 pub mod outcome;
+pub mod passage;
 pub mod polish;
 #[cfg(feature = "python")]
 mod python;

@@ -35,11 +35,11 @@ fn samples_lie_on_the_arcs() {
     // The K_P of a square of side 2 is its incircle.
     let square = [(1., 1.), (-1., 1.), (-1., -1.), (1., -1.)].map(|(x, y)| DVec3::new(x, y, 0.));
     let curve = Curve::new(vec![square.to_vec()]).unwrap();
-    let (circle, turn) = Inscribed::new(&curve).sample(&[100], 0.3);
+    let (circle, above) = Inscribed::new(&curve).sample(&[100], 0.3);
     for v in circle.vertices() {
         assert_relative_eq!(v.length(), 1., max_relative = 1e-14);
     }
-    assert_relative_eq!(turn, std::f64::consts::TAU / 100., max_relative = 1e-9);
+    assert_relative_eq!(above.turn, std::f64::consts::TAU / 100., max_relative = 1e-9);
 }
 
 #[test]

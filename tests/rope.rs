@@ -32,6 +32,10 @@ fn a_sweep_that_would_pass_a_strand_is_undone() {
             assert!((linking(rope.curve()) - linked).abs() < 1e-6, "{c_1} {c_2} {shrink}");
         }
         assert!(undone > 10, "{c_1} {c_2} {shrink}: {undone} undone");
+        let passages = rope.passages();
+        assert_eq!((passages.refused, passages.shown), (undone, states.len() as u64 - 1));
+        assert!(rope.lost() >= undone && rope.lost() <= 1000);
+        assert!(passages.margin.is_none_or(|margin| margin > 1.));
     }
 }
 

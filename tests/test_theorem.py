@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from test_check_certificate import beds, bump, hopf, ring, stadium
 
 import sono
-from sono import check_certificate, starts
+from sono import check_certificate, check_thickness, starts
 
 CURVES: dict[str, Callable[[], Any]] = {
     "ring": lambda: [ring(12)],
@@ -99,6 +99,7 @@ def test_lines_that_are_pointed_to_are_there() -> None:
     if not page.is_file():
         pytest.skip("needs the source tree")
     lines = set(re.findall(r"^- \(([TDPC]\d+)\)", page.read_text(encoding="utf-8"), re.MULTILINE))
-    named = set(re.findall(r"\(([TDPC]\d+)\)", Path(check_certificate.__file__).read_text(encoding="utf-8")))
+    paths = [Path(str(module.__file__)) for module in (check_certificate, check_thickness)]
+    named = set(re.findall(r"\(([TDPC]\d+)\)", "".join(path.read_text(encoding="utf-8") for path in paths)))
     assert named <= lines
-    assert {"T1", "T2", "T3", *(f"C{number}" for number in range(1, 10))} <= named
+    assert {"T1", "T2", "T3", *(f"C{number}" for number in range(1, 10)), "T5", "T6", "T7", "C11"} <= named

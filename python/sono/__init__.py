@@ -46,6 +46,8 @@ if TYPE_CHECKING:
     from sono.naming import Verdict as Verdict
     from sono.searching import Minimum as Minimum
     from sono.shape import Descriptors as Descriptors
+    from sono.thickness import Thickness as Thickness
+    from sono.thickness import sharpen as sharpen
     from sono.tightening import KnotTypeError as KnotTypeError
     from sono.tightening import Progress as Progress
     from sono.tightening import Settings as Settings
@@ -70,6 +72,8 @@ _HOMES = {
     "Minimum": "sono.searching",
     "Certificate": "sono.certificates",
     "certify": "sono.certificates",
+    "Thickness": "sono.thickness",
+    "sharpen": "sono.thickness",
     "Comparison": "sono.comparison",
     "compare": "sono.comparison",
     "Solid": "sono.figures.solids",

@@ -96,8 +96,14 @@ class _Status(TypedDict):
     progress: float
     """Share of the planned sweeps done; 0 while loosening and collapsing."""
     sweeps: int
+    lost: int
+    """Sweeps that were undone because a strand might have passed another."""
+    moves: int
+    """Moves, each of many sweeps, that were shown to let no strand pass."""
     undone: int
-    """How often sweeps were undone because a strand might have passed another."""
+    """Those that were not, and were undone."""
+    margin: float | None
+    """The least ratio of the distance of beads that count to the longest edge over sqrt 2, of those shown."""
     epsilon: float
     """Overshoot of RO at this moment, R = 1."""
     overlap: float
@@ -116,6 +122,12 @@ class _PolishStatus(TypedDict):
     iterations: int
     """Newton steps."""
     factorisations: int
+    moves: int
+    """Steps that were shown to let no strand pass."""
+    undone: int
+    """Those that were not, and were not made."""
+    margin: float | None
+    """As SONO's."""
     residual: float
     """Largest force left over on a bead or, on average, on an edge; tension is about 1."""
     mu: float
@@ -143,6 +155,12 @@ class Collapse:
 
     def loosened(self) -> _Components | None:
         """Return the loosened curve, None unless it had to be loosened."""
+
+    def loosening(self) -> dict[str, Any] | None:
+        """Return how many vertices loosening `moved` and `removed`, None unless it had to be loosened.
+
+        Other counts are those of the collapse before, which had jammed far too long, if there was one.
+        """
 
     def best(self) -> _Components:
         """Return the shortest rope so far, its R_s = 1, its centre at the origin."""

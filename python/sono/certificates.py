@@ -18,7 +18,7 @@ import numpy as np
 
 from sono import _core
 from sono.calls import Rope, start
-from sono.curve import Components, CurveLike, as_components
+from sono.curve import CurveLike, as_components, polygon
 from sono.records import Record
 
 FORMAT, VERSION = "sono certificate", 1
@@ -78,7 +78,7 @@ class Certificate(Record):
         vertices in plain rows of x y z.
         """
         data = Path(file).read_bytes()
-        if _polygon_in(data) != self.polygon:
+        if polygon_in(data) != self.polygon:
             name = os.fspath(file)
             raise ValueError(f"{name}: does not hold these vertices in plain rows of x y z; sono.write does")
         figures = self.to_dict()
@@ -124,7 +124,7 @@ def certify(vertices: Rope) -> Certificate:
         length=up(bound["inscribed_length"]),
         l_c=up(bound["l_c"]),
         decided_by=Decider(bound["condition"], tuple(bound["vertices"])),
-        polygon=_polygon(components),
+        polygon=polygon(components),
     )
 
 
@@ -132,15 +132,7 @@ def _rounded_up(digits: int) -> Context:
     return Context(digits, ROUND_CEILING)
 
 
-def _polygon(components: Components) -> str:
-    """Return what tells these vertices from others."""
-    found = hashlib.sha256()
-    for component in components:
-        found.update(component.astype("<f8").tobytes() + b"end of component")
-    return found.hexdigest()
-
-
-def _polygon_in(data: bytes) -> str | None:
+def polygon_in(data: bytes) -> str | None:
     """Tell the vertices in the bytes of a file, if those are plain rows of x y z and nothing else.
 
     Read as simply as a checker may do it: cells between spaces or commas, # before comments, a blank line
@@ -154,6 +146,6 @@ def _polygon_in(data: bytes) -> str | None:
                 parts[-1].append(list(map(float, cells)))
             elif not comment:
                 parts.append([])
-        return _polygon([np.array(part) for part in parts if part])
+        return polygon([np.array(part) for part in parts if part])
     except ValueError:
         return None

@@ -17,6 +17,7 @@ import hashlib
 import json
 import re
 import sys
+from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from itertools import accumulate, pairwise
@@ -216,34 +217,32 @@ def prove_thickness(loops: list[Loop], four_r2: int, units: int) -> None:
                 fail(f"R^2 <= M_c^2 + S_c^2/4 fails at {[c, i]} (T1)", bend + loop.longest)
     for c, loop in enumerate(loops):
         for d, other in enumerate(loops[c:], c):
-            if pair := too_close(loop, other, four_r2):
-                i, j, apart = pair
+            for i, j, apart in nearer(loop, other, four_r2):
                 fail(f"2 R <= |v_i - v_j| fails for {[c, i]} and {[d, j]} (T2)", apart)
 
 
-def too_close(one: Loop, other: Loop, four_r2: int) -> tuple[int, int, int] | None:
-    """Return vertices that may count and are nearer than 2 R, and the square of that (C7)."""
-    a, b, two_r = one.along, other.along, root_above(four_r2)
+def nearer(one: Loop, other: Loop, least: int) -> Iterator[tuple[int, int, int]]:
+    """Give vertices that may count and are nearer than the root of the `least` square, and theirs (C7)."""
+    a, b, root = one.along, other.along, root_above(least)
     todo = [(0, len(one.vertices), 0, len(other.vertices))]
     while todo:
         i, i_end, j, j_end = todo.pop()
         if one is other and min(b[j_end - 1] - a[i], a[i_end - 1] - b[j] + b[-1]) < one.counts:
             continue
         p, q = (i + i_end) // 2, (j + j_end) // 2
-        reach = two_r + max(a[p] - a[i], a[i_end - 1] - a[p]) + max(b[q] - b[j], b[j_end - 1] - b[q])
+        reach = root + max(a[p] - a[i], a[i_end - 1] - a[p]) + max(b[q] - b[j], b[j_end - 1] - b[q])
         apart = square(one.vertices[p], other.vertices[q])
         if apart >= reach * reach:
             continue
         if i_end - i == j_end - j == 1:
-            if apart < four_r2:
-                return i, j, apart
+            if apart < least:
+                yield i, j, apart
         elif one is other and i == j:
             todo += [(i, p, i, p), (i, p, p, i_end), (p, i_end, p, i_end)]
         elif i_end - i >= j_end - j:
             todo += [(i, p, j, j_end), (p, i_end, j, j_end)]
         else:
             todo += [(i, i_end, j, q), (i, i_end, q, j_end)]
-    return None
 
 
 def prove_figures(loops: list[Loop], claimed: dict[str, Fraction], units: int) -> None:

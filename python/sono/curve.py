@@ -5,6 +5,7 @@ RADIUS of the rope. May import nothing of sono but the core, and what results ha
 """
 
 import base64
+import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias, cast, overload
@@ -206,6 +207,14 @@ def forces_of(found: tuple[Floats, Floats, NDArray[np.int64], Floats, float], cu
     for array in found[:4]:
         array.setflags(write=False)
     return Forces(*found, tuple(map(len, curve)))
+
+
+def polygon(curve: Components) -> str:
+    """Return what tells these vertices from others: the SHA-256 of them as little-endian doubles."""
+    found = hashlib.sha256()
+    for component in curve:
+        found.update(component.astype("<f8").tobytes() + b"end of component")
+    return found.hexdigest()
 
 
 def packed(curve: Components | None) -> list[str] | None:

@@ -99,13 +99,31 @@ impl Inscribed {
     }
 
     /// The curve of `n[c]` vertices on each component, all chords of a component equal, the first
-    /// vertex `shift` edges after the start; and the largest angle by which the curve turns in all
-    /// above a chord.
-    pub fn sample(&self, n: &[usize], shift: f64) -> (Curve, f64) {
-        let sampled: Vec<_> =
-            self.components.iter().zip(n).map(|(p, &n)| equal_chords(p, n, shift)).collect();
-        let turn = sampled.iter().map(|(_, turn)| *turn).fold(0., f64::max);
-        (Curve::from_components(sampled.into_iter().map(|(v, _)| v).collect()), turn)
+    /// vertex `shift` edges after the start; and the most that there is of the curve above a chord.
+    pub fn sample(&self, n: &[usize], shift: f64) -> (Curve, Above) {
+        let mut most = Above::default();
+        let mut equal = |(pieces, &n)| {
+            let (vertices, above) = equal_chords(pieces, n, shift);
+            most = most.max(above);
+            vertices
+        };
+        let sampled = self.components.iter().map(Vec::as_slice).zip(n).map(&mut equal).collect();
+        (Curve::from_components(sampled), most)
+    }
+}
+
+/// The angle by which a curve turns in all above a chord, and its length there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Above {
+    /// The angle.
+    pub turn: f64,
+    /// The length.
+    pub arc: f64,
+}
+
+impl Above {
+    fn max(self, other: Self) -> Self {
+        Self { turn: self.turn.max(other.turn), arc: self.arc.max(other.arc) }
     }
 }
 
@@ -155,11 +173,11 @@ fn length(pieces: &[Piece]) -> f64 {
 }
 
 /// Finds the chord that leads once around in exactly `n` steps, by the secant method.
-fn equal_chords(pieces: &[Piece], n: usize, shift: f64) -> (Vec<DVec3>, f64) {
+fn equal_chords(pieces: &[Piece], n: usize, shift: f64) -> (Vec<DVec3>, Above) {
     let around = length(pieces);
     let first = around / n as f64;
     let start = shift * first;
-    let mut walk = Walk { pieces, around, points: Vec::with_capacity(n), turn: 0. };
+    let mut walk = Walk { pieces, around, points: Vec::with_capacity(n), above: Above::default() };
     let mut chords = [first, first * (1. - 1e-3)];
     let mut gaps = chords.map(|chord| walk.gap(start, chord, n));
     for _ in 0..50 {
@@ -171,22 +189,21 @@ fn equal_chords(pieces: &[Piece], n: usize, shift: f64) -> (Vec<DVec3>, f64) {
         chords = [b, chord];
         gaps = [gap_b, walk.gap(start, chord, n)];
     }
-    (walk.points, walk.turn)
+    (walk.points, walk.above)
 }
 
 struct Walk<'a> {
     pieces: &'a [Piece],
     around: f64,
     points: Vec<DVec3>,
-    /// The largest angle by which the curve turns above a chord.
-    turn: f64,
+    above: Above,
 }
 
 impl Walk<'_> {
     /// Takes `n` steps of equal chords and returns by how much arclength they lead too far.
     fn gap(&mut self, start: f64, chord: f64, n: usize) -> f64 {
         self.points.clear();
-        self.turn = 0.;
+        self.above = Above::default();
         let mut s = start;
         let mut at = self.pieces.partition_point(|p| p.at <= start).max(1) - 1;
         let mut point = self.point(&mut at, s);
@@ -205,7 +222,7 @@ impl Walk<'_> {
                 }
             }
             turned = self.turned(at, s);
-            self.turn = self.turn.max(turned - from.1);
+            self.above = self.above.max(Above { turn: turned - from.1, arc: s - from.0 });
         }
         s - start - self.around
     }

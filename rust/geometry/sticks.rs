@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::boxes::{Span, Tree};
 use crate::geometry::curve::Curve;
@@ -35,6 +36,16 @@ pub struct Sticks {
     /// How many vertices each component has.
     left: Vec<usize>,
     tree: Tree,
+    moves: Moves,
+}
+
+/// How many vertices were moved, one after the other, and removed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Moves {
+    /// Moves of a vertex.
+    pub moved: u64,
+    /// Vertices removed.
+    pub removed: u64,
 }
 
 impl Sticks {
@@ -48,7 +59,17 @@ impl Sticks {
         let left = curve.ranges().map(|range| range.len()).collect();
         let tree =
             Tree::new(next.iter().enumerate().map(|(i, &j)| Span::of(&[points[i], points[j]])));
-        Self { points, next, prev, bounds, left, tree }
+        Self { points, next, prev, bounds, left, tree, moves: Moves::default() }
+    }
+
+    /// The same on another curve, its moves being added to those of `earlier` sticks.
+    pub fn after(earlier: &Self, curve: &Curve) -> Self {
+        Self { moves: earlier.moves, ..Self::new(curve) }
+    }
+
+    /// How many moves there were.
+    pub fn moves(&self) -> Moves {
+        self.moves
     }
 
     /// The polygon as a curve.
@@ -81,6 +102,7 @@ impl Sticks {
 
     /// Puts all vertices elsewhere, which must be known to be an isotopy.
     pub fn set_points(&mut self, points: Vec<DVec3>) {
+        self.moves.moved += points.len() as u64;
         self.points = points;
         self.tree = Tree::new((0..self.points.len()).map(|i| Span::of(&self.edge(i))));
     }
@@ -125,6 +147,7 @@ impl Sticks {
             return false;
         }
         self.left[c] -= 1;
+        self.moves.removed += 1;
         (self.next[a], self.prev[b]) = (b, a);
         (self.next[i], self.prev[i]) = (REMOVED, REMOVED);
         self.tree.set(i, Span::EMPTY);
@@ -144,6 +167,7 @@ impl Sticks {
             return false;
         }
         self.points[i] = place;
+        self.moves.moved += 1;
         self.tree.set(a, Span::of(&self.edge(a)));
         self.tree.set(i, Span::of(&self.edge(i)));
         true

@@ -36,7 +36,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::error::{Error, Result};
 use crate::geometry::curve::Curve;
 use crate::geometry::embedded::check_embedded;
-use crate::geometry::sticks::Sticks;
+use crate::geometry::sticks::{Moves, Sticks};
 use crate::invariants::projection::fewest_crossings;
 use reduction::{Reduction, shaken};
 use repulsion::Repulsion;
@@ -48,6 +48,8 @@ const SETTLED: f64 = 0.01;
 const ATTEMPTS: usize = 40;
 /// How often edges are halved.
 const HALVINGS: usize = 2;
+/// Clearance of an edge that is halved, in units of rounding.
+const MUCH: f64 = 100.;
 /// Crossings that are left at most of what can be loosened.
 const MOST_CROSSINGS: usize = 20_000;
 
@@ -143,6 +145,11 @@ impl Loosening {
         self.sticks.curve()
     }
 
+    /// How many moves it took so far.
+    pub fn moves(&self) -> Moves {
+        self.sticks.moves()
+    }
+
     /// A small part of the work.
     fn step(&mut self) -> Result<()> {
         let Self { sticks, rng, .. } = self;
@@ -190,26 +197,29 @@ impl Loosening {
             }
             self.halvings += 1;
             self.attempts = 0;
-            self.sticks = Sticks::new(&halved(&self.sticks.curve()));
+            self.sticks = Sticks::after(&self.sticks, &halved(&self.sticks));
         }
         Ok(Work::Repel(SWEEPS))
     }
 }
 
-/// The same polygon with a vertex amid each edge that is longer than the mean.
-fn halved(curve: &Curve) -> Curve {
+/// The same polygon with a vertex amid each edge that is longer than the mean. Rounding puts it beside the
+/// edge, by far less than what is left between that and the others, or it is left out.
+fn halved(sticks: &Sticks) -> Curve {
+    let curve = sticks.curve();
     let mean = curve.length() / curve.n() as f64;
-    let component = |c: usize| {
-        let v = curve.component(c);
-        let mut halved = Vec::with_capacity(2 * v.len());
-        for (i, &from) in v.iter().enumerate() {
-            let to = v[(i + 1) % v.len()];
+    let mut slots = sticks.slots();
+    let mut component = |c: usize| {
+        let mut halved = Vec::with_capacity(2 * curve.component(c).len());
+        for i in slots.by_ref().take(curve.component(c).len()) {
+            let [from, to] = sticks.edge(i);
+            let rounding = f64::EPSILON * from.abs().max(to.abs()).max_element();
             halved.push(from);
-            if from.distance(to) > mean {
+            if from.distance(to) > mean && sticks.clearance(i) > MUCH * rounding {
                 halved.push(0.5 * (from + to));
             }
         }
         halved
     };
-    Curve::from_components((0..curve.components()).map(component).collect())
+    Curve::from_components((0..curve.components()).map(&mut component).collect())
 }

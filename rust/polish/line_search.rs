@@ -1,4 +1,16 @@
-//! How far along a Newton step constraints and the barrier function allow to go.
+//! How far along a Newton step constraints, the barrier function and the strands allow to go.
+//!
+//! A step moves all beads straight, from where the rope is to where it shall be. **No strand passes another**
+//! by the theorem of [`crate::passage`], whose conditions are looked at on each step by themselves. They need
+//! not be concluded from the constraints, which do not imply all of them: that edges and contacts keep what
+//! they have is known along the whole step, as their courses are quadratic, but of the least length of an
+//! edge, and of a bend on a rope whose required edges get shorter, only what it is at the end. The theorem asks
+//! for the distances of all beads that count, k or more apart along the rope, k being the `least` of
+//! their component. Those that [`Polish::look_around`] lists are looked at one by one. Others were at least
+//! 2 + 2.5 `way` apart, and no bead moves further than `way`, so they stay more than 2 apart. As k only grows,
+//! a pair that counted and was not listed is none that is forgotten: it is no longer asked for.
+//!
+//! Between steps nothing moves: a new beginning scales the best rope, which was one of these.
 
 use super::barrier::longest_step;
 use super::newton::Step;
@@ -6,6 +18,7 @@ use super::problem::{Multipliers, Surroundings, Unknowns};
 use super::settings::Settings;
 use super::term::Term;
 use super::{Best, Polish};
+use crate::passage::margin;
 
 /// Rounding errors of the barrier function, as a share of it.
 const NOISE: f64 = 1e-14;
@@ -32,20 +45,25 @@ impl Polish {
     }
 
     /// The share of the step, at most `most`, that lowers the barrier function, and where it leads.
-    fn search(&self, step: &Step, around: &Surroundings, most: f64) -> Option<(f64, Unknowns)> {
+    fn search(&mut self, step: &Step, around: &Surroundings, most: f64) -> Option<(f64, Unknowns)> {
         let Surroundings { terms, bystanders } = around;
         let Settings { most_used, least_descent, .. } = self.settings;
-        let (rope, barrier) = (&self.rope, self.barrier());
-        let pairs = self.contacts.iter().chain(bystanders).copied();
+        let barrier = self.barrier();
+        let Self { rope, contacts, passages, least, .. } = self;
+        let before = rope.curve.vertices();
+        let pairs = contacts.iter().chain(bystanders).copied();
         let merit = |rope: &Unknowns| barrier.merit(rope, pairs.clone());
         let others = bystanders.iter().map(|&pair| rope.contact(pair));
         let all = terms.iter().copied().chain(others);
         let mut a = all.fold(most, |a, t| a.min(longest_step(&t, &step.to, most_used)));
-        let before = merit(rope);
+        let highest = merit(rope);
         for _ in 0..MOST_HALVINGS {
             let moved = rope.moved(a, &step.to);
             // False where a bend's course, cubic in l, has led out after all: the merit is NaN.
-            if merit(&moved) <= before + least_descent * a * step.slope + NOISE * before.abs() {
+            let is_lower =
+                merit(&moved) <= highest + least_descent * a * step.slope + NOISE * highest.abs();
+            let found = || margin(before, &moved.curve, least, pairs.clone(), 2.);
+            if is_lower && passages.may(found()) {
                 return Some((a, moved));
             }
             a *= 0.5;
@@ -77,12 +95,29 @@ mod tests {
     use super::*;
     use crate::geometry::curve::Curve;
 
-    #[test]
-    fn a_multiplier_that_would_reach_0_does_not_hold_up_the_others() {
+    fn circle() -> Polish {
         let angle = |i| TAU * f64::from(i) / 40.;
         let vertex = |i| DVec3::new(angle(i).cos(), angle(i).sin(), 0.);
         let circle = Curve::new(vec![(0..40).map(vertex).collect()]).unwrap();
-        let mut polish = Polish::new(&circle, 40, false, 0, Settings::default()).unwrap();
+        Polish::new(&circle, 40, false, 0, Settings::default()).unwrap()
+    }
+
+    #[test]
+    fn a_step_on_which_edges_vanish_is_not_taken() {
+        // All beads go through the centre to the other side, where all constraints are as they were.
+        let mut polish = circle();
+        let around = Surroundings { terms: polish.rope.terms(&[]), bystanders: vec![] };
+        let mut to = Direction::lengthening(&polish.rope.curve, 0.);
+        to.beads = polish.rope.curve.vertices().iter().map(|v| -2. * *v).collect();
+        let step = Step { to, dz: polish.z.map(|_| 0.), slope: 0. };
+        let (share, _) = polish.search(&step, &around, 1.).unwrap();
+        assert!(share < 0.06, "edges of {} of their length are too short", 1. - 2. * share);
+        assert!(polish.passages.refused > 0 && polish.passages.shown == 1);
+    }
+
+    #[test]
+    fn a_multiplier_that_would_reach_0_does_not_hold_up_the_others() {
+        let mut polish = circle();
         let around = polish.look_around();
         let mut dz = polish.z.map(|z| 0.5 * z);
         dz.edges[0] = -1e9;

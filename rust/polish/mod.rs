@@ -1,5 +1,5 @@
-//! The polish: a primal-dual interior-point method on the bead rope. Imports `beads`, `resample` and
-//! what these import; nothing of `sono`.
+//! The polish: a primal-dual interior-point method on the bead rope. Imports `beads`, `passage`, `resample`
+//! and what these import; nothing of `sono`.
 //!
 //! `direction, system <- term <- problem <- barrier, matrix <- newton, least_squares <- forces`, the
 //! barrier with the `settings`; on all of them the loop here, how it begins (`start`), what is near
@@ -7,8 +7,8 @@
 //!
 //! SONO converges linearly; a tight rope solves a sparse smooth optimisation problem
 //! (`problem`), and Newton's method reaches the exact state in some tens of factorisations. Every
-//! iterate is a valid rope: constraints hold strictly along each step, so that no strand passes
-//! another (see [`crate::sono::passage`]), and stopping early loses nothing.
+//! iterate is a valid rope, and no strand passes another along a step (see `line_search`), so that
+//! stopping early loses nothing.
 //!
 //! With multipliers z the perturbed conditions are grad f = sum z grad g and z g = mu w(g), w = 1
 //! for the logarithmic barrier and w = (1 - g/hat)^2 for the contacts' clamped one. An iteration is
@@ -42,6 +42,7 @@ use crate::geometry::curve::Curve;
 use crate::geometry::neighbours::Pair;
 use crate::measures::{Measures, measure};
 use crate::outcome::Outcome;
+use crate::passage::Passages;
 use crate::resample::scaled;
 use barrier::Barrier;
 pub use forces::{Forces, balance};
@@ -60,6 +61,8 @@ pub struct Status {
     pub iterations: u64,
     /// Cholesky factorisations, those of indefinite matrices included.
     pub factorisations: u64,
+    /// The steps of each of which it was looked at whether a strand might pass another.
+    pub passages: Passages,
     /// Largest force left over on a bead or, on average, on an edge; tension is about 1.
     pub residual: f64,
     /// Barrier parameter: each constraint's product of multiplier and slack.
@@ -102,6 +105,7 @@ pub struct Polish {
     way: f64,
     newton: Newton,
     iterations: u64,
+    passages: Passages,
     residual: f64,
     excess: f64,
     attempt: Attempt,
@@ -250,6 +254,7 @@ impl Polish {
             progress: if fallen < whole { (fallen / whole).clamp(0., 1.) } else { 1. },
             iterations: self.iterations,
             factorisations: self.newton.factorisations(),
+            passages: self.passages,
             residual: self.residual,
             mu: self.mu,
             excess: self.excess,

@@ -11,14 +11,13 @@ use crate::geometry::neighbours::for_each_close_pair;
 use crate::geometry::separation::Separation;
 use crate::measures::measure;
 use crate::outcome::Outcome;
-use crate::resample::{refine, resampled, rope_curve};
+use crate::passage::Passages;
+use crate::resample::{MOST_BEADS, on_chords, resampled, rope_curve};
 
 /// Dispersion from which on a curve is not taken as a rope that is to be refined.
 const UNEQUAL: f64 = 0.04;
 /// Share by which a bend's condition may be violated by a rope that is taken as it is.
 const TOO_BENT: f64 = 1e-3;
-/// Beads of a rope that is made of a curve which is none.
-const MOST_BEADS: usize = 20_000;
 
 impl Polish {
     /// Polishes any embedded curve, of any unit, on `n` vertices in all. Ends with a tight rope, or, if
@@ -51,6 +50,7 @@ impl Polish {
             way: (2. * dl * dl).min(longest_way),
             newton: Newton::default(),
             iterations: 0,
+            passages: Passages::default(),
             residual: f64::MAX,
             excess: f64::MAX,
             attempt: Attempt { first_mu: 0., iterations: 0, l_p: 0. },
@@ -112,7 +112,7 @@ fn rope_on(curve: &Curve, n: usize, seed: u64) -> Result<Curve> {
     let most = |l: f64| TOO_BENT * (l * most_bend(l)).powi(2);
     if rope.bends().any(|t| t.g < -most(rope.l[t.component])) {
         // Edges too unequal for its own bends; equal ones lie on K_P.
-        rope.curve = refine(&rope.curve, n, 0.)?;
+        rope.curve = on_chords(&rope.curve, &measure(&rope.curve), n, 0.)?.0;
         rope.curve.scale(1. / measure(&rope.curve).r_s);
     }
     rope.curve.centre();

@@ -3,10 +3,11 @@
 use pyo3::prelude::*;
 
 use super::curve::{Arrays, Given, arrays, curve};
-use super::dict::Dict;
+use super::dict::{Dict, dict};
 use super::engine::{budget, restored, settings_from_json, state};
 use super::errors::{released, tried};
 use super::tightener::status;
+use crate::passage::Passages;
 
 /// From any embedded curve to a jammed rope; a thin one is loosened first, unless it was before.
 #[pyclass(module = "sono._core")]
@@ -40,6 +41,18 @@ impl Collapse {
     /// The loosened curve, if it was loosened.
     fn loosened<'py>(&self, py: Python<'py>) -> PyResult<Option<Arrays<'py>>> {
         self.0.loosened().map(|curve| arrays(py, curve)).transpose()
+    }
+
+    /// What loosening took, if the curve was loosened: vertices moved and removed, and the sweeps that a
+    /// rope had jammed in before.
+    fn loosening<'py>(&self, py: Python<'py>) -> PyResult<Option<Dict<'py>>> {
+        let Some((took, before)) = self.0.loosening() else { return Ok(None) };
+        let passages = before.map_or_else(Passages::default, |status| status.passages);
+        let [sweeps, lost] = before.map_or([0, 0], |status| [status.sweeps, status.lost]);
+        Ok(Some(dict!(
+            py, took: moved, removed, sweeps = sweeps, lost = lost, moves = passages.shown,
+            undone = passages.refused, margin = passages.margin,
+        )))
     }
 
     /// The best rope so far, its R_s = 1, its centre at the origin.

@@ -13,8 +13,9 @@ use crate::polish::Status;
 /// Where a `Polish` stands; `residual` is a force, tension being 1.
 fn status<'py>(py: Python<'py>, of: &Status) -> PyResult<Dict<'py>> {
     Ok(dict!(
-        py, of: outcome = name_of(of.outcome), progress, iterations, factorisations, residual, mu,
-        excess, best = measures(py, &of.best)?,
+        py, of: outcome = name_of(of.outcome), progress, iterations, factorisations,
+        moves = of.passages.shown, undone = of.passages.refused, margin = of.passages.margin,
+        residual, mu, excess, best = measures(py, &of.best)?,
     ))
 }
 

@@ -13,7 +13,8 @@ use crate::{Curve, Settings, Stage, Status};
 /// Where SONO stands; `overlap` and `dispersion` are those the last sweep met, R = 1.
 pub fn status<'py>(py: Python<'py>, of: &Status) -> PyResult<Dict<'py>> {
     Ok(dict!(
-        py, of: outcome = name_of(of.outcome), stage = stage(of.stage), progress, sweeps, undone,
+        py, of: outcome = name_of(of.outcome), stage = stage(of.stage), progress, sweeps, lost,
+        moves = of.passages.shown, undone = of.passages.refused, margin = of.passages.margin,
         epsilon, overlap = of.met.overlap, dispersion = of.met.dispersion,
         best = measures(py, &of.best)?,
     ))

@@ -11,10 +11,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::geometry::curve::Curve;
+use crate::geometry::sticks::Moves;
 use crate::invariants::projection::fewest_crossings;
 use crate::loosening::{Loosening, simplified};
 use crate::measures::measure;
 use crate::outcome::Outcome;
+use crate::passage::Passages;
 use crate::resample::scaled;
 use crate::sono::rope::Violation;
 use crate::sono::settings::Settings;
@@ -56,6 +58,8 @@ pub struct Collapse {
     #[serde(skip)]
     loosening: Option<Loosening>,
     loosened: Option<Curve>,
+    /// What that took.
+    moves: Moves,
     /// The collapse of the loosened curve.
     loose: Option<Tightener>,
 }
@@ -80,6 +84,7 @@ impl Collapse {
             direct,
             loosening: None,
             loosened: None,
+            moves: Moves::default(),
             loose: None,
         })
     }
@@ -126,6 +131,7 @@ impl Collapse {
         let loosening = self.loosening.as_mut().expect("just begun");
         if loosening.advance(budget)? {
             let loosened = loosening.curve();
+            self.moves = loosening.moves();
             self.loose = Some(Tightener::collapse(&loosened, LOOSENED, self.settings)?);
             (self.loosened, self.loosening) = (Some(loosened), None);
         }
@@ -135,6 +141,13 @@ impl Collapse {
     /// The loosened curve, if it was loosened, so that little of the shape it had is left.
     pub fn loosened(&self) -> Option<&Curve> {
         self.loosened.as_ref()
+    }
+
+    /// What loosening took, if the curve was loosened, and where the rope stood that had jammed before, if
+    /// there was one.
+    pub fn loosening(&self) -> Option<(Moves, Option<Status>)> {
+        let before = || self.direct.as_ref().map(Tightener::status);
+        self.loosened.as_ref().map(|_| (self.moves, before()))
     }
 
     /// The shortest rope so far, its R_s = 1, its centre at the origin.
@@ -160,7 +173,8 @@ impl Collapse {
                 stage: Stage::Loosen,
                 progress: 0.,
                 sweeps: 0,
-                undone: 0,
+                lost: 0,
+                passages: Passages::default(),
                 epsilon: 0.,
                 met: Violation::default(),
                 best,

@@ -1,12 +1,11 @@
 //! SONO: sweeps of three procedures on a bead rope, and the stages they make up.
-//! Imports `beads`, `resample`, `loosening` and what these import; nothing of `polish`.
+//! Imports `beads`, `passage`, `resample`, `loosening` and what these import; nothing of `polish`.
 //!
-//! `settings, stage, best, procedures, passage <- rope <- tighten <- begin <- collapse`.
+//! `settings, stage, best, procedures <- rope <- tighten <- begin <- collapse`.
 
 mod begin;
 mod best;
 pub mod collapse;
-pub mod passage;
 pub mod procedures;
 pub mod rope;
 pub mod settings;

@@ -4,7 +4,7 @@
 //! Until the next list no bead leaves the ball of radius skin/2 about its place of that time (a step
 //! that leads out of it ends on its surface, and a new list is made). So beads that are not listed
 //! never overlap. Before the new list the straight way from the old places to the new ones is looked
-//! at as a whole: if a strand may pass another on it ([`crate::sono::passage`]), all is undone that followed
+//! at as a whole: if a strand may pass another on it ([`crate::passage`]), all is undone that followed
 //! the last list. So it is, too, before the rope is looked at in any other way that matters.
 
 use std::ops::Range;
@@ -18,7 +18,7 @@ use crate::geometry::neighbours::{Pair, close_pairs};
 use crate::geometry::separation::Separation;
 use crate::geometry::sticks::Sticks;
 use crate::measures::measure;
-use crate::sono::passage::stay_apart;
+use crate::passage::{Passages, margin};
 use crate::sono::procedures::{control_curvature, equalize_edges, remove_overlaps};
 
 /// The thickest skin of the neighbour list, hence the longest way of a bead in one sweep.
@@ -79,6 +79,9 @@ pub struct Rope {
     age: usize,
     /// How often in a row all was undone that followed a list.
     undone: u64,
+    /// What was shown of all that followed a list, and how many sweeps were undone.
+    passages: Passages,
+    lost: u64,
 }
 
 impl Rope {
@@ -100,10 +103,17 @@ impl Rope {
             skin: 0.,
             age: 0,
             undone: 0,
+            passages: Passages::default(),
+            lost: 0,
         };
         rope.skin = rope.longest_dl().powi(2).min(0.5 * THICKEST_SKIN);
         rope.list_neighbours();
         rope
+    }
+
+    /// What becomes of the rope on `curve`, a rope of its type: one of R_s = 1 that counts on.
+    pub fn followed_by(&self, curve: Curve) -> Self {
+        Self { passages: self.passages, lost: self.lost, ..Self::new(curve) }
     }
 
     /// Whether a restored rope is one: all beads there are, all numbers are finite.
@@ -177,11 +187,14 @@ impl Rope {
     /// The same without the new list, which the caller makes.
     fn undo_unless_apart(&mut self) -> bool {
         // Two beads that are not listed were 2 + skin apart and each came skin/2 closer.
-        let apart = stay_apart(&self.reference, &self.curve, &self.least, &self.pairs, 2.);
+        let pairs = self.pairs.iter().copied();
+        let found = margin(&self.reference, &self.curve, &self.least, pairs, 2.);
+        let apart = if self.age == 0 { found.is_some() } else { self.passages.may(found) };
         if apart {
             self.undone = 0;
         } else {
             self.undone += 1;
+            self.lost += self.age as u64;
             self.undo();
         }
         apart
@@ -190,6 +203,16 @@ impl Rope {
     /// How often in a row all was undone that followed a list.
     pub fn undone(&self) -> u64 {
         self.undone
+    }
+
+    /// What was shown of the moves so far, each from one list to the next.
+    pub fn passages(&self) -> Passages {
+        self.passages
+    }
+
+    /// How many sweeps were undone.
+    pub fn lost(&self) -> u64 {
+        self.lost
     }
 
     /// One EE, RO and CC pass. Returns the violations met, or `None` where all was undone that

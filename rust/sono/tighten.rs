@@ -40,7 +40,8 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::curve::Curve;
 use crate::measures::{Measures, measure};
 use crate::outcome::Outcome;
-use crate::resample::refine;
+use crate::passage::Passages;
+use crate::resample::on_chords;
 use crate::sono::best::Best;
 use crate::sono::rope::{Rope, Violation};
 use crate::sono::settings::Settings;
@@ -81,8 +82,10 @@ pub struct Status {
     pub progress: f64,
     /// Sweeps done.
     pub sweeps: u64,
-    /// How often sweeps were undone because a strand might have passed another.
-    pub undone: u64,
+    /// Those that were undone because a strand might have passed another.
+    pub lost: u64,
+    /// The moves of many sweeps each of which it was looked at whether one might.
+    pub passages: Passages,
     /// The overshoot of RO at this moment.
     pub epsilon: f64,
     /// What the last sweep met.
@@ -100,7 +103,6 @@ pub struct Tightener {
     sweeps: u64,
     planned: u64,
     first_tolerance: f64,
-    undone: u64,
     met: Violation,
     outcome: Outcome,
     best: Best,
@@ -125,7 +127,6 @@ impl Tightener {
             sweeps: 0,
             planned,
             first_tolerance: tolerance,
-            undone: 0,
             met: Violation::default(),
             outcome: Outcome::Running,
             length: f64::MAX,
@@ -175,19 +176,16 @@ impl Tightener {
     fn sweep(&mut self) {
         let tolerance = self.tolerance();
         let Settings { c_1, c_2, .. } = self.settings;
-        match self.rope.sweep(c_1, c_2, 0.5 * tolerance) {
-            Some(met) => {
-                self.met = met;
-                self.shrink_on_no_overlaps(tolerance);
-            }
-            None => self.undone += 1,
+        if let Some(met) = self.rope.sweep(c_1, c_2, 0.5 * tolerance) {
+            self.met = met;
+            self.shrink_on_no_overlaps(tolerance);
         }
         self.sweeps += 1;
     }
 
     /// Looks at what the rope measures, and whether the stage is done.
     fn look(&mut self) {
-        self.undone += u64::from(!self.rope.confirm());
+        self.rope.confirm();
         let valid = self.best.offer(self.rope.curve(), self.settings.tolerance);
         self.outcome = self.judge(valid);
         if self.stage == Stage::Collapse && self.outcome == Outcome::Tight {
@@ -234,15 +232,18 @@ impl Tightener {
     /// Scales a collapsing rope down as far as its beads allow, and takes out beads that have come
     /// close: EE alone would shorten long slack only as fast as tension diffuses along the chain.
     fn take_in_slack(&mut self) {
-        self.undone += u64::from(!self.rope.confirm());
+        self.rope.confirm();
         let curve = self.rope.curve();
-        let slack = measure(curve).r_s > 1. + SLACK;
+        let given = measure(curve);
+        let slack = given.r_s > 1. + SLACK;
         if self.rope.dl() < TOO_FINE {
             // A component is no shorter than 2 pi.
             let n = ((self.rope.length() / LOOSE) as usize).max(12 * curve.components());
-            self.rope = Rope::new(refine(curve, n, 0.25).expect("enough beads"));
+            if let Ok((fewer, _)) = on_chords(curve, &given, n, 0.25) {
+                self.rope = self.rope.followed_by(fewer);
+            }
         } else if slack {
-            self.rope = Rope::new(curve.clone());
+            self.rope = self.rope.followed_by(curve.clone());
         } else if self.met.overlap.max(self.met.curvature) < LIGHT {
             self.rope.scale(1. - LIGHT);
         }
@@ -278,7 +279,8 @@ impl Tightener {
             stage: self.stage,
             progress: self.progress(),
             sweeps: self.sweeps,
-            undone: self.undone,
+            lost: self.rope.lost(),
+            passages: self.rope.passages(),
             epsilon: 0.5 * self.tolerance(),
             met: self.met,
             best: measure(self.best()),

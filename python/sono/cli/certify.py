@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from sono.certificates import Certificate
     from sono.formats import Close, VertexFile
     from sono.jobs.sources import Source
+    from sono.thickness import Thickness
+
+CERTIFICATE, THICKNESS = ".certificate.json", ".thickness.json"
+"""What the names of files end in that prove bounds, and sharper ones."""
 
 COLUMNS = ("knot", "n", "certified", "r_c", "min_rad", "decided_by", "file")
 
@@ -25,6 +29,9 @@ COLUMNS = ("knot", "n", "certified", "r_c", "min_rad", "decided_by", "file")
 @click.argument("given", metavar="FILE|NAME...", nargs=-1, required=True)
 @click.option("--json", "as_json", is_flag=True, help="Write certificates, one a line, instead of a table.")
 @click.option("-o", "--output", metavar="FOLDER", help="Write certificates, and vertices, into this folder.")
+@click.option(
+    "--sharp", is_flag=True, help="Prove a sharper bound too, by the thickness of the inscribed knot."
+)
 @click.option("--check", metavar="CERTIFICATE", help="Check a certificate of FILE instead of making one.")
 @options.close
 @options.force
@@ -33,6 +40,7 @@ def command(
     given: tuple[str, ...],
     as_json: bool,
     output: str | None,
+    sharp: bool,
     check: str | None,
     close: "Close | None",
     force: bool,
@@ -46,21 +54,24 @@ def command(
 
     A certificate is of a file of plain rows x y z, whose SHA-256 it has. With -o the vertices of all else are
     written as FOLDER/NAME.txt, next to NAME.certificate.json. --check believes nothing that a certificate
-    says, and shares no code with what made it:
+    says, and shares no code with what made it. With --sharp there is a column sharp, and --json or -o give
+    what proves that, NAME.thickness.json, which --check takes as well:
 
     \b
       sono certify 8_18 -o proofs/
       sono certify --check proofs/8_18.certificate.json proofs/8_18.txt
     """
     if check is not None:
-        if output or as_json or len(given) != 1:
+        if output or as_json or sharp or len(given) != 1:
             raise click.UsageError("--check CERTIFICATE takes one FILE, and nothing is written")
         sys.exit(_checked(check, given[0]))
     if as_json and output:
         raise click.UsageError("give --json or -o FOLDER, not both")
     if output:
         places.make_folder(output)
-    sys.exit(_certified(given, close, _Maker(output, force), as_json, shown))
+    if sharp and "certified" in shown.columns and "sharp" not in shown.columns:
+        shown.columns.insert(shown.columns.index("certified") + 1, "sharp")
+    sys.exit(_certified(given, close, _Maker(output, force, sharp), as_json, shown))
 
 
 def _certified(
@@ -71,23 +82,27 @@ def _certified(
 
         def certify(source: "Source") -> None:
             curve, certificate = _proven(source)
+            sharp = _sharpened(source, curve) if maker.sharp else None
             for doubt in curve.doubts():
                 shown.tell(doubt)
             if table:
-                file = maker.written(source, curve, certificate) if maker.folder else str(source)
-                table.row(row(source.name, file, certificate))
+                file = maker.written(source, curve, certificate, sharp) if maker.folder else str(source)
+                table.row(row(source.name, file, certificate, sharp))
             else:
-                click.echo(json.dumps(maker.document(source, curve, certificate)[1]))
+                click.echo(json.dumps(maker.document(source, curve, sharp or certificate)[1]))
 
         return each(given, close, certify)
 
 
 def _checked(certificate: str, file: str) -> int:
     """Have a certificate checked by what knows nothing of its making; return the exit code."""
-    from sono.check_certificate import check
+    from sono import check_certificate, check_thickness
 
     try:
-        bound = check(certificate, file)["l_c"]
+        if certificate.endswith(THICKNESS):
+            bound = check_thickness.check(certificate, file)["l_k"]
+        else:
+            bound = check_certificate.check(certificate, file)["l_c"]
     except OSError as error:
         options.complain(f"{error.filename}: cannot be read: {error.strerror}")
     except ValueError as error:
@@ -113,12 +128,24 @@ def _proven(source: "Source") -> "tuple[VertexFile, Certificate]":
         raise located(error, curve) from error
 
 
-def row(name: str, file: str, certificate: "Certificate") -> tables.Row:
+def _sharpened(source: "Source", curve: "VertexFile") -> "Thickness":
+    """Return what is proven besides, where that is sharper. Raises `FormatError`."""
+    from sono.formats import FormatError
+    from sono.patience import patiently
+    from sono.thickness import sharpen
+
+    try:
+        return patiently(lambda: sharpen(curve.components))
+    except ValueError as error:
+        raise FormatError(f"{source}: {error}") from error
+
+
+def row(name: str, file: str, certificate: "Certificate", sharp: "Thickness | None" = None) -> tables.Row:
     """Return the row of a curve; what readers see of L_c is rounded up as well."""
     figures: dict[str, Any] = {key: float(getattr(certificate, key)) for key in ("r_c", "min_rad")}
     figures |= {"n": certificate.n, "components": len(certificate.components), "knot": name, "file": file}
     figures |= {"certified": certificate.rounded(), "decided_by": str(certificate.decided_by)}
-    return figures
+    return figures | ({"sharp": sharp.rounded()} if sharp else {})
 
 
 @dataclass(frozen=True)
@@ -127,18 +154,24 @@ class _Maker:
 
     folder: str | None
     force: bool
+    sharp: bool = False
 
-    def written(self, source: "Source", curve: "VertexFile", certificate: "Certificate") -> str:
-        """Write a certificate into the folder; return the file that it is of. Raises `FormatError`."""
+    def written(
+        self, source: "Source", curve: "VertexFile", certificate: "Certificate", sharp: "Thickness | None"
+    ) -> str:
+        """Write what proves bounds into the folder; return the file that it is of. Raises `FormatError`."""
         from sono import formats
 
-        path = self._path(source, ".certificate.json")
+        path = self._path(source, CERTIFICATE)
+        path_of_sharp = self._path(source, THICKNESS) if sharp else ""
         file, document = self.document(source, curve, certificate)
         formats.save(path, json.dumps(document, indent=1) + "\n")
+        if sharp:
+            formats.save(path_of_sharp, json.dumps(sharp.document(file), indent=1) + "\n")
         return file
 
     def document(
-        self, source: "Source", curve: "VertexFile", certificate: "Certificate"
+        self, source: "Source", curve: "VertexFile", certificate: "Certificate | Thickness"
     ) -> tuple[str, dict[str, Any]]:
         """Return the file that a certificate is of, and its document. Raises `FormatError`."""
         from sono import formats

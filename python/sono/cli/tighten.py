@@ -99,6 +99,9 @@ def _lengths(ctx: click.Context, param: click.Parameter, value: str | None) -> "
     metavar="PATH",
     help="File or folder/ for the forces in the tight rope, as TSV; in a folder NAME.nN.contacts.tsv.",
 )
+@click.option(
+    "--record", is_flag=True, help="Write NAME.nN.record.json beside the vertices: what proves their type."
+)
 @options.force
 @click.option(
     "--seed", type=click.IntRange(0, 2**64 - 1), default=0, help="Seed of the anneals.  [default: 0]"
@@ -135,6 +138,8 @@ def command(
 
     if numbers and lengths:
         raise click.UsageError("-n counts vertices, --dl says how long edges are; give one of them")
+    if pool.cluster and asked["record"]:
+        raise click.UsageError("--record cannot be had from a cluster; leave one of the two out")
     if pool.cluster and asked["checkpoint"]:
         raise click.UsageError("a checkpoint is of no use on a cluster; --resume keeps what is finished")
     work = _work(sources, numbers or lengths or [480], **asked)
@@ -154,6 +159,7 @@ def _work(
     start: str,
     output: str | None,
     contacts: str | None,
+    record: bool,
     force: bool,
     seed: int,
     time_limit: float | None,
@@ -168,10 +174,12 @@ def _work(
     fresh = places.fresh(force, resume)
     if contacts and method == "sono":
         raise click.UsageError("--contacts needs the polish; use the method both or polish")
+    if record and output == "-":
+        raise click.UsageError("--record is written beside a file of vertices; name one with -o")
     if output == contacts == "-":
         raise click.UsageError("standard output cannot hold both vertices and contacts; name a file for one")
     same: dict[str, Any] = {"settings": _settings(seed, pairs), "method": method, "trials": trials}
-    same |= {"time_limit": time_limit, "resume": resume, "known": start == "known"}
+    same |= {"time_limit": time_limit, "resume": resume, "known": start == "known", "record": record}
     work = [
         Job(
             source,

@@ -5,7 +5,7 @@ import os
 from sono.curve import forces
 from sono.formats import FormatError, VertexFile
 from sono.formats.ropefile import SETTLED, STUCK, TIGHT, figures
-from sono.jobs import contacts
+from sono.jobs import contacts, record
 from sono.jobs.curvefiles import KEPT_RESIDUAL, rope_in
 from sono.jobs.order import Order, judged, made_from, rope_row, shown, tolerance
 from sono.jobs.result import Result
@@ -27,6 +27,8 @@ def kept_row(job: Order, file: VertexFile, n: Target) -> Result:
             raise FormatError(f"{output}: {other}; repeat those or move it away, or --force starts anew")
         if header.figures != figures(measures):
             raise FormatError(f"{output}: is not as it was written; move it away, or --force starts anew")
+        if job.record:
+            record.check(output)
         fitted = None if job.method == "sono" else forces(rope.components)
         if fitted and n in job.forces and not os.path.isfile(job.forces[n]):
             contacts.write(job.forces[n], rope.components, fitted)

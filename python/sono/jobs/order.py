@@ -8,7 +8,7 @@ from typing import Any
 
 from sono import starts
 from sono.curve import Components, Measures
-from sono.formats import VertexFile, is_stream
+from sono.formats import VertexFile, is_stream, unpacked
 from sono.formats.ropefile import STUCK
 from sono.jobs.curvefiles import digest
 from sono.jobs.result import Result, as_row
@@ -27,7 +27,7 @@ class Order:
     those between them, if they are wanted; "-" is standard output. `time_limit` is in seconds. `checkpoint`
     is the file that keeps the state of the run. With `resume` a run goes on from its checkpoint, and outputs
     that are there are not computed again. `known` lets the rope of a knot by name begin with the shape that
-    the atlas has of it.
+    the atlas has of it. A `record` is written beside each output, which is a file then.
     """
 
     source: Source
@@ -41,6 +41,7 @@ class Order:
     checkpoint: Path | None = None
     resume: bool = False
     known: bool = True
+    record: bool = False
 
     @cached_property
     def shape(self) -> Components | None:
@@ -51,8 +52,14 @@ class Order:
     def files(self) -> list[str]:
         """Return the files that the job writes."""
         paths = [*self.outputs.values(), *self.forces.values()]
+        paths += map(record_beside, self.outputs.values()) if self.record else []
         outputs = [path for path in paths if not is_stream(path)]
         return [*outputs, os.fspath(self.checkpoint)] if self.checkpoint else outputs
+
+
+def record_beside(output: str) -> str:
+    """Return the name of the record beside a rope's file."""
+    return os.fspath(Path(unpacked(output)).with_suffix(".record.json"))
 
 
 def shown(target: Target) -> str:

@@ -16,7 +16,7 @@ from sono.curve import measure
 from sono.formats import FormatError, VertexFile, is_stream
 from sono.formats.ropefile import SETTLED, STOPPED, STUCK, TIGHT, Header, Made
 from sono.invariants import fingerprint
-from sono.jobs import checkpoints, contacts
+from sono.jobs import checkpoints, contacts, record
 from sono.jobs.curvefiles import free_name, located, measured, names_of_best, rope_in
 from sono.jobs.order import Order, judged, made_from, rope_row, shown
 from sono.jobs.result import Result
@@ -52,6 +52,7 @@ class Task:
         self.file = file
         self.todo = todo
         self.identity = [made_from(job, file), *job.outputs]
+        self.records = record.Records(job, file) if job.record else None
         self.told: list[str] = []
         self.failed: dict[Target, str] = {}
         self.run = self.restored() or self.begun()
@@ -169,6 +170,8 @@ class Task:
             # The file has every digit; reading it again would only make a stop wait.
             if not is_stream(output) and status != STOPPED:
                 measures = measured(output)[1]
+            if self.records and not is_stream(output):
+                self.records.write(output, tight, status)
         except FormatError as error:
             unwritten = str(error)
         work = {"trials": _trials(tight), "seconds": tight.seconds} | {
@@ -187,7 +190,7 @@ class Task:
                 unfinished = header.status == STOPPED
                 same = unfinished and fingerprint(file.components) == fingerprint(tight.curve)
                 if same and (measures.l_c or math.inf) >= longer:
-                    os.unlink(path)
+                    record.remove(path)
 
     def begun(self) -> Run:
         """Return the run at its beginning."""

@@ -38,6 +38,7 @@ COLUMNS = {
         Column("l_c", "L_c", "$L_c$", ".6f", 11),
         Column("l_a", "L_a", "$L_a=(4 L_p+L_c)/5$", ".6f", 11),
         Column("certified", "certified L_c", "certified $L_c$", "", 15),
+        Column("sharp", "certified L_K", "certified $L_K$", "", 15),
         Column("decided_by", "decided by", "decided by", "", 18),
         Column("dispersion", "dispersion", "dispersion", ".1e", 10),
         Column("min_rad", "MinRad", "$MinRad$", ".9f", 12),

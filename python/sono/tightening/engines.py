@@ -22,9 +22,10 @@ _ENGINES: dict[str, type[Engine]] = {engine.__name__: engine for engine in (Coll
 class Status(Record):
     """Where an engine stands: its `outcome`, its `progress` from 0 to 1, and what its `best` state measures.
 
-    SONO's engines name the `stage` they are at, which may be "loosen", and count `sweeps`. The polish counts
-    `factorisations`, and has the largest force that is left over, the `residual`, tension being 1, the
-    barrier parameter `mu`, and the `excess` over the minimum.
+    SONO's engines name the `stage` they are at, which may be "loosen", and count `sweeps`, and those that
+    were `lost`. The polish counts `iterations` and `factorisations`, and has the largest force that is left
+    over, the `residual`, tension being 1, the barrier parameter `mu`, and the `excess` over the minimum.
+    Both count `moves`, and those `undone`, with the least `margin`: see `Work`.
     """
 
     outcome: Literal["running", "tight", "stuck"]
@@ -32,7 +33,12 @@ class Status(Record):
     best: Measures
     stage: str | None = None
     sweeps: int = 0
+    lost: int = 0
+    iterations: int = 0
     factorisations: int = 0
+    moves: int = 0
+    undone: int = 0
+    margin: float | None = None
     residual: float | None = None
     mu: float | None = None
     excess: float | None = None

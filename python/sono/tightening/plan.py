@@ -16,6 +16,7 @@ from sono.tightening.engines import Engine, status_of
 from sono.tightening.settings import TRIALS, Method, of_polish, of_sono
 from sono.tightening.targets import COARSE, Target, aimed, coarsest, doubled
 from sono.tightening.trial import Recipe, Trial
+from sono.tightening.work import Log
 
 Stage = Literal["collapse", "anneal", "reanneal", "settle", "trial", "climb", "polish"]
 
@@ -67,6 +68,7 @@ class Plan:
     those found; `shapes` has the length of each, and `failed` says why other trials came to nothing. `climbs`
     counts those that were made once more for the sake of the edges. `known` is a shape of radius 1 to climb
     from instead, where edges are short enough for it, and `from_known` tells that the rope comes from there.
+    The `log` has what was done.
     """
 
     targets: list[Target]
@@ -84,6 +86,7 @@ class Plan:
     climbs: int = 0
     known: Components | None = None
     from_known: bool = False
+    log: Log = field(default_factory=Log)
 
     def __post_init__(self) -> None:
         """Begin with the first trial, or with the climb."""
@@ -140,11 +143,11 @@ class Plan:
 
     def take(self, engine: Engine) -> None:
         """Go on from what the rung has ended in."""
-        self.curve = engine.best()
+        self.curve = self.log.add(engine, self.rung[0], self.tried + 1 if self.trial else None)
         if not self.trial:
             self.rungs.pop(0)
         elif self.method == "sono":
-            self.shape, self.trial = self.curve, None
+            self.shape, self.trial, self.log.shape = self.curve, None, self.log.curve
             self._anneal()
         elif not self.trial.take(engine):
             self._compare(status_of(engine).best)
@@ -157,7 +160,7 @@ class Plan:
             "recipe": vars(self.trial.recipe),
             "curve": packed(self.trial.curve),
         }
-        return vars(self) | curves | {"trial": trial}
+        return vars(self) | curves | {"trial": trial, "log": self.log.state()}
 
     @classmethod
     def restore(cls, state: dict[str, Any]) -> Self:
@@ -168,7 +171,8 @@ class Plan:
             curve = unpacked(trial["curve"])
             trial = Trial(**trial | {"recipe": Recipe(**trial["recipe"]), "curve": curve})
         rungs = [(stage, n) for stage, n in state["rungs"]]
-        return cls(**state | curves | {"trial": trial, "rungs": rungs})
+        log = Log.restore(state["log"])
+        return cls(**state | curves | {"trial": trial, "rungs": rungs, "log": log})
 
     def climb_again(self, engine: Engine) -> bool:
         """Plan another climb if edges, which follow the rope's own length, are not as long as asked for."""
@@ -176,7 +180,7 @@ class Plan:
         aim = aimed(self.targets[0], found.l_p)
         if self.climbs == CLIMBS or aim == found.n:
             return False
-        self.curve, self.climbs = engine.best(), self.climbs + 1
+        self.curve, self.climbs = self.log.add(engine, self.rung[0]), self.climbs + 1
         self._climb()
         return True
 
@@ -216,7 +220,7 @@ class Plan:
         elif self.method == "polish" or (reached and edge < COARSE):
             self._climb()
         elif self.shape and not reached:  # it could not be refined to that n
-            self.curve = self.shape
+            self.curve, self.log.curve = self.shape, self.log.shape
             self._climb()
         else:  # what suits so few beads may not suit more of them
             self.shape, self.shapes, self.failed = None, [], []
@@ -232,7 +236,7 @@ class Plan:
     def _climb_from_known(self) -> None:
         """Plan the climb from the shape that is known."""
         assert self.known is not None
-        self.curve, self.from_known = self.known, True
+        self.curve, self.from_known, self.log.curve = self.known, True, None
         self.shape, self.shapes, self.failed = None, [], []
         self._climb()
         if len(self.rungs) > 1 and self.rungs[0][1] < SHORT * sum(map(len, self.known)):
@@ -241,7 +245,7 @@ class Plan:
     def _next_trial(self) -> None:
         """Plan another trial, or, where there were enough, the climb from the best shape."""
         if self._enough():
-            self.curve = cast("Components", self.shape)
+            self.curve, self.log.curve = cast("Components", self.shape), self.log.shape
             self._climb()
         else:
             self._try_again()
@@ -249,13 +253,13 @@ class Plan:
     def _try_again(self) -> None:
         """Plan another trial."""
         recipe = Recipe.numbered(self.tried, self.settings, self.targets[0], short=self.method == "both")
-        self.curve, self.rungs = self.start, []
+        self.curve, self.rungs, self.log.curve = self.start, [], self.log.start
         self.trial = Trial(recipe, self.start, self.loosened)
 
     def _compare(self, measures: Measures) -> None:
         """Keep the shape of a trial if it is the best."""
         if self.shape is None or _rank_of_shape(measures) < _rank_of_shape(measure(self.shape)):
-            self.shape = self.curve
+            self.shape, self.log.shape = self.curve, self.log.curve
         self.shapes.append(measures.l_a_or_l_p)
 
     def _enough(self) -> bool:
@@ -269,7 +273,8 @@ class Plan:
     def _anneal(self) -> None:
         """Plan SONO's rungs from the collapsed rope to the first target."""
         assert self.shape is not None
-        self.curve, length = self.shape, measure(self.shape).l_p
+        self.curve, self.log.curve = self.shape, self.log.shape
+        length = measure(self.shape).l_p
         n = aimed(self.targets[0], length)
         few = coarsest(n, length)
         finer = doubled(few, n)

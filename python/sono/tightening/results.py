@@ -1,12 +1,13 @@
 """What a tightening gives: the rope, and before that where it stands or why it stopped."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Self
 
-from sono.curve import Curve, Forces, Measures
+from sono.curve import Components, Curve, Forces, Measures, measure
 from sono.records import Drawn, Record
 from sono.tightening.engines import Status
-from sono.tightening.plan import Stage
+from sono.tightening.plan import Plan, Stage
+from sono.tightening.work import Work, total
 
 if TYPE_CHECKING:
     from sono.figures.view import View
@@ -31,6 +32,10 @@ class Tight(Record, Drawn):
     was given, held only a thin rope, and was first loosened by isotopic moves. `known` tells that the rope
     was polished from a shape that was known, without trials. `sweeps`, `factorisations` and `seconds` count
     from the start of the run.
+
+    `path` are the stages that led to the rope, one after the other, from the curve that was given or the
+    shape that was known; `total` adds up all that were made, those of other trials too. They say which moves
+    were shown to let no strand pass: see `Work`.
 
     Where the polish came last, `residual` is the largest force left over, tension being 1, and `forces` are
     those in the rope (fitted to the vertices if it has not converged); `mu` is the product of each
@@ -58,6 +63,32 @@ class Tight(Record, Drawn):
     excess: float | None = None
     forces: Forces | None = None
     known: bool = False
+    path: tuple[Work, ...] = ()
+    total: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, plan: Plan, seconds: float, status: Status | None, curve: Components) -> Self:
+        """Make the result of a rope of a plan, or of what an engine that has this `status` is at."""
+        log = plan.log
+        now = [Work.of(status, plan.rung[0])] if status else []
+        end = log.shape if curve is plan.shape else log.curve
+        last = [] if curve is plan.shape or curve is plan.curve else now
+        sums = total([*log.works, *now])
+        return cls(
+            curve=Curve(curve),
+            measures=measure(curve),
+            converged=status is not None and status.outcome == "tight",
+            shapes=list(plan.shapes),
+            failed=list(plan.failed),
+            loosened=plan.loosened,
+            known=plan.from_known,
+            sweeps=sums["sweeps"],
+            factorisations=sums["factorisations"],
+            seconds=seconds,
+            mu=status.mu if status else None,
+            path=(*log.path(end), *last),
+            total=sums,
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values: what the rope measures first, among the other fields."""

@@ -12,11 +12,11 @@ from functools import partial
 from typing import Any, Self, TypeVar, cast
 
 from sono._core import Collapse, CurveError, PanicError, Polish
-from sono.curve import Components, Curve, Measures, forces, forces_of
+from sono.curve import Components, Curve, forces, forces_of
 from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.patience import patiently, within
 from sono.tightening.coarser import coarser, unit
-from sono.tightening.engines import Engine, Seen, Status, advanced, as_seen, rank, restored, saved, status_of
+from sono.tightening.engines import Engine, Seen, advanced, as_seen, rank, restored, saved, status_of
 from sono.tightening.plan import GROOVED, Plan
 from sono.tightening.results import KnotTypeError, Progress, Tight
 from sono.tightening.settings import TRIALS, Method, check_settings
@@ -66,7 +66,7 @@ class Run:
         self.engine: Engine | None = None
         self.rival: Polish | None = None
         self.offset = 0
-        self.work = {"sweeps": 0, "factorisations": 0, "seconds": 0.0}
+        self.seconds = 0.0
         self.busy = False
         self.seen: Seen | None = None
 
@@ -103,7 +103,6 @@ class Run:
                 self.rival, self.engine = cast("Polish", self._better()), None
                 self.offset += 1
             elif self.plan.climb_again(better := self._better()):
-                self._count(better)
                 self.engine, self.offset = None, 0
             else:
                 return self._ended(better, look)
@@ -128,8 +127,9 @@ class Run:
             curve = plan.shape  # In the middle of another trial the best shape so far is better.
         elif not self._has_type(curve):
             curve = plan.curve
+        tight = Tight.of(plan, self.seconds, status, curve)
         curve, measures = unit(coarser(curve, plan.n))
-        return replace(self._tight(status, curve, measures), converged=False)
+        return replace(tight, curve=Curve(curve), measures=measures, converged=False)
 
     @property
     def at_rest(self) -> bool:
@@ -144,7 +144,7 @@ class Run:
             "engine": saved(self.engine),
             "rival": saved(self.rival),
             "offset": self.offset,
-            "work": self.work,
+            "seconds": self.seconds,
         }
 
     @classmethod
@@ -160,7 +160,7 @@ class Run:
         run.plan = plan
         run.type = state["type"] and tuple(map(tuple, state["type"]))
         run.engine, run.rival = restored(state["engine"]), cast("Polish | None", restored(state["rival"]))
-        run.offset, run.work = state["offset"], {**run.work, **state["work"]}
+        run.offset, run.seconds = state["offset"], float(state["seconds"])
         return run
 
     def _engine(self, stage: str, n: int) -> Engine:
@@ -177,7 +177,7 @@ class Run:
         while True:
             start = time.perf_counter()
             status, curve = self._busily(partial(advanced, self.engine), look)
-            self.work["seconds"] += time.perf_counter() - start
+            self.seconds += time.perf_counter() - start
             if status.outcome != "running":
                 return
             self.seen = status, curve
@@ -236,7 +236,7 @@ class Run:
         if not (self.rival and isinstance(self.engine, Polish)):
             return self.engine
         better, worse = sorted((self.engine, self.rival), key=rank)
-        self.work["factorisations"] += status_of(worse).factorisations
+        self.plan.log.add_aside(status_of(worse), self.plan.rung[0])
         self.engine, self.rival = better, None
         return better
 
@@ -244,19 +244,15 @@ class Run:
         """Take over what the rung has reached."""
         if self.engine is None:
             return
-        self._count(self.engine)
         if isinstance(self.engine, Collapse) and (loosened := self.engine.loosened()):
             self.plan.take_loosened(loosened)  # once for all trials
         self.plan.take(self.engine)
         self.engine = None
 
-    def _count(self, engine: Engine) -> None:
-        """Add up the work of an engine that is left."""
-        for kind in ("sweeps", "factorisations"):
-            self.work[kind] += getattr(status_of(engine), kind)
-
     def _fail(self, error: CurveError | PanicError | KnotTypeError) -> None:
         """Do without the trial, or the offset, that failed; raise its error where there is nothing else."""
+        if self.engine and isinstance(error, KnotTypeError):
+            self.plan.log.add_aside(status_of(self.engine), self.plan.rung[0])
         self.engine = None
         if self.rival:
             self.engine, self.rival, self.offset = self.rival, None, OFFSETS
@@ -264,27 +260,10 @@ class Run:
         needed = error.needed or float("inf") if isinstance(error, CurveError) else 0
         self.plan.fail(error, needed)
 
-    def _tight(self, status: Status | None, curve: Components, measures: Measures) -> Tight:
-        """Make the result of a rope, and of all the work that led there."""
-        plan = self.plan
-        return Tight(
-            curve=Curve(curve),
-            measures=measures,
-            converged=status is not None and status.outcome == "tight",
-            shapes=list(plan.shapes),
-            failed=list(plan.failed),
-            loosened=plan.loosened,
-            known=plan.from_known,
-            sweeps=int(self.work["sweeps"] + (status.sweeps if status else 0)),
-            factorisations=int(self.work["factorisations"] + (status.factorisations if status else 0)),
-            seconds=self.work["seconds"],
-            mu=status.mu if status else None,
-        )
-
     def _ended(self, engine: Engine, look: Callable[[], None]) -> Tight:
         """Return what the last rung has ended in, with the forces in it."""
         status, curve = as_seen(engine)
-        tight = self._tight(status, curve, status.best)
+        tight = Tight.of(self.plan, self.seconds, status, curve)
         if not isinstance(engine, Polish):
             return tight
         if not tight.converged:
@@ -295,4 +274,4 @@ class Run:
         return replace(tight, residual=status.residual, excess=status.excess, forces=own)
 
 
-_STATE = {"plan", "type", "engine", "rival", "offset", "work"}
+_STATE = {"plan", "type", "engine", "rival", "offset", "seconds"}

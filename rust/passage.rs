@@ -1,4 +1,5 @@
-//! Whether strands stay apart while all beads of a rope move straight from one place to another.
+//! Whether strands stay apart while all beads of a rope move straight from one place to another: all that
+//! SONO's sweeps have done since the last list of neighbours, or a step of the polish.
 //!
 //! Two beads of different components, or at least k apart along one, are said to *count*. Let those
 //! stay at least d apart all the time, let the edges of a component be s_0 to s_1 long, and let theta
@@ -25,38 +26,80 @@
 //! On a straight way the shortest distance of two beads is known, |v_(i+1) - v_i| and the second
 //! differences are largest at one of its ends, being convex, and |b - a| >= 2 sin(theta/2) min(|a|, |b|)
 //! bounds the angle between two edges.
+//!
+//! So no edges meet at any time of the way, neighbours at their bead only: the polygon is embedded all the
+//! time, and the way is an isotopy. Places are numbers of 53 bits, between which the way is meant exactly;
+//! what is computed of it is off by some 1e-15 of the lengths that it is made of, 3 radii at most for two
+//! beads of a list, and k + 1 edges for an arc. [`ROUNDING`] of these is kept in hand in each comparison;
+//! where an edge gets as short as [`VANISHING`], so that digits cancel, nothing is taken as shown.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::curve::Curve;
 use crate::geometry::neighbours::Pair;
 use crate::geometry::segments;
 
-/// Whether no strand passes another while the beads move straight from `before` to where `curve` has
-/// them. Pairs that count are in `pairs`, or stay `unlisted` apart; `least[c]` is k for component c.
-pub fn stay_apart(
+/// What the conditions are to have in hand, as a share of each: far more than rounding, far less than matters.
+const ROUNDING: f64 = 1e-9;
+/// The least square of an edge, as a share of the largest.
+const VANISHING: f64 = 1e-4;
+
+/// What has been shown of the moves of a rope.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Passages {
+    /// Moves on which no strand passes another.
+    pub shown: u64,
+    /// Those of which this was not shown, and which were not made, or undone.
+    pub refused: u64,
+    /// The least [`margin`] of those shown, if there were any.
+    pub margin: Option<f64>,
+}
+
+impl Passages {
+    /// Counts a move that has this margin; returns whether it may be made.
+    pub fn may(&mut self, margin: Option<f64>) -> bool {
+        match margin {
+            Some(found) => {
+                self.shown += 1;
+                self.margin = Some(self.margin.map_or(found, |least| least.min(found)));
+            }
+            None => self.refused += 1,
+        }
+        margin.is_some()
+    }
+}
+
+/// By how much beads are further apart than it takes, sqrt 2 d/s_1, while they move straight from `before`
+/// to where `curve` has them; `None` if a strand might pass another. Pairs that count are in `pairs`, or stay
+/// `unlisted` apart; `least[c]` is k for component c.
+pub fn margin(
     before: &[DVec3],
     curve: &Curve,
     least: &[usize],
-    pairs: &[Pair],
+    pairs: impl Iterator<Item = Pair>,
     unlisted: f64,
-) -> bool {
+) -> Option<f64> {
     let after = curve.vertices();
     if !after.iter().all(|v| v.is_finite()) {
-        return false;
+        return None;
     }
-    let apart = pairs.iter().fold(unlisted * unlisted, |apart, &(i, j)| {
+    let apart = pairs.fold(unlisted * unlisted, |apart, (i, j)| {
         let way = [before, after].map(|v| v[j as usize] - v[i as usize]);
         apart.min(shortest_squared(way))
     });
-    curve.ranges().zip(least).all(|(range, &k)| {
+    curve.ranges().zip(least).try_fold(f64::MAX, |margin, (range, &k)| {
         let [before, after] = [before, after].map(|v| &v[range.clone()]);
         let edges = Edges::on_the_way(before, after);
-        edges.longest < 2. * apart
+        let found = (2. * apart / edges.longest).sqrt();
+        let spare = ROUNDING * edges.longest.sqrt();
+        let is_shown = found > 1. + ROUNDING
+            && edges.shortest > VANISHING * edges.longest
             && edges.angle() < PI
-            && (edges.stay_open(k) || near_edges_apart(before, after, k))
+            && (edges.stay_open(k) || near_edges_apart(before, after, k, spare));
+        is_shown.then(|| margin.min(found))
     })
 }
 
@@ -91,7 +134,7 @@ impl Edges {
 
     /// The largest angle by which the component turns at a bead.
     fn angle(&self) -> f64 {
-        2. * (0.5 * self.sharpest.sqrt()).asin()
+        2. * (0.5 * (1. + ROUNDING) * self.sharpest.sqrt()).asin()
     }
 
     /// Whether no arc of up to k + 1 of them closes.
@@ -102,8 +145,8 @@ impl Edges {
     }
 }
 
-/// Whether edges 2 to k apart on one component are further from each other than their ends move.
-fn near_edges_apart(before: &[DVec3], after: &[DVec3], k: usize) -> bool {
+/// Whether edges 2 to k apart on one component are further from each other than their ends move, and `spare`.
+fn near_edges_apart(before: &[DVec3], after: &[DVec3], k: usize, spare: f64) -> bool {
     let n = before.len();
     let moved: Vec<_> = before.iter().zip(after).map(|(a, b)| a.distance(*b)).collect();
     let edge = |v: &[DVec3], i: usize| [v[i], v[(i + 1) % n]];
@@ -112,7 +155,7 @@ fn near_edges_apart(before: &[DVec3], after: &[DVec3], k: usize) -> bool {
         (2..=k.min(n.saturating_sub(2))).all(|ahead| {
             let j = (i + ahead) % n;
             let apart = |v: &[DVec3]| segments::distance(edge(v, i), edge(v, j));
-            apart(before).max(apart(after)) > way(i) + way(j)
+            apart(before).max(apart(after)) > way(i) + way(j) + spare
         })
     })
 }
@@ -126,7 +169,7 @@ pub fn stays_open(m: usize, angle: f64, ratio: f64) -> bool {
         if cosine < 0. { cosine } else { ratio * cosine }
     };
     let inner: f64 = (1..m.saturating_sub(1)).map(along).sum();
-    middle * angle <= PI && (m < 3 || inner + 2. * along(0).min(0.) > 0.)
+    middle * angle <= PI && (m < 3 || inner + 2. * along(0).min(0.) > ROUNDING * m as f64)
 }
 
 /// The least squared length on the straight way from `a` to `b`.
@@ -192,8 +235,8 @@ mod tests {
         let at = |z| Curve::from_components(vec![square(z), other.clone()]);
         let pairs: Vec<_> = (0..4).flat_map(|i| (4..8).map(move |j| (i, j))).collect();
         let (above, below) = (at(0.1), at(-0.1));
-        assert!(!stay_apart(above.vertices(), &below, &[2, 2], &pairs, 2.));
-        assert!(!stay_apart(below.vertices(), &above, &[2, 2], &pairs, 2.));
+        assert!(margin(above.vertices(), &below, &[2, 2], pairs.iter().copied(), 2.).is_none());
+        assert!(margin(below.vertices(), &above, &[2, 2], pairs.into_iter(), 2.).is_none());
     }
 
     #[test]
@@ -203,7 +246,8 @@ mod tests {
         let at = |x: f64| Curve::from_components(vec![ring(x, 0.01), ring(-x, -0.01)]);
         let pairs: Vec<_> = (0..12).flat_map(|i| (12..24).map(move |j| (i, j))).collect();
         let apart = |from: f64, to: f64| {
-            stay_apart(at(from).vertices(), &at(to), &[6, 6], &pairs, f64::MAX)
+            let pairs = pairs.iter().copied();
+            margin(at(from).vertices(), &at(to), &[6, 6], pairs, f64::MAX).is_some()
         };
         assert!(apart(5., 4.9));
         assert!(!apart(5., -5.));
@@ -217,8 +261,9 @@ mod tests {
             curve.iter_mut().step_by(2).for_each(|v| v.z += z);
             Curve::from_components(vec![curve])
         };
-        let apart =
-            |from: f64, to: f64| stay_apart(rough(from).vertices(), &rough(to), &[12], &[], 2.);
+        let apart = |from: f64, to: f64| {
+            margin(rough(from).vertices(), &rough(to), &[12], std::iter::empty(), 2.).is_some()
+        };
         assert!(apart(0.5, 0.55));
         assert!(!apart(0.5, -0.6), "beads move further than edges are apart");
     }
@@ -247,7 +292,7 @@ mod tests {
                 Curve::from_components(vec![triangle(a, b, thirds[0]), triangle(c, d, thirds[1])])
             };
             let pairs: Vec<_> = (0..3).flat_map(|i| (3..6).map(move |j| (i, j))).collect();
-            prop_assert!(!stay_apart(at(0.).vertices(), &at(1.), &[2, 2], &pairs, 2.));
+            prop_assert!(margin(at(0.).vertices(), &at(1.), &[2, 2], pairs.into_iter(), 2.).is_none());
         }
     }
 }
