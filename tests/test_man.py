@@ -27,7 +27,7 @@ def test_each_command_has_a_page() -> None:
 @each_page
 @pytest.mark.skipif(not shutil.which("groff"), reason="needs groff")
 def test_troff_has_no_complaint(name: str) -> None:
-    command = ["groff", "-man", "-ww", "-Kutf8", "-Tutf8", "-P-cbou"]
+    command = ["groff", "-man", "-ww", "-Wbreak", "-Kutf8", "-Tutf8", "-P-cbou"]
     done = subprocess.run(command, input=PAGES[name], capture_output=True, encoding="utf-8", check=True)
     assert done.stderr == ""
     assert all(part in done.stdout for part in ("NAME", "SYNOPSIS", "OPTIONS", "-h, --help"))
