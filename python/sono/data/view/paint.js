@@ -1,6 +1,7 @@
 // The rope by WebGL2: rods between two rings each (rope, contacts, marks), and balls that are traced pixel by pixel.
 
-const SIDES = 32;
+/** Sides of the rope, and of a contact, which is thin. */
+const SIDES = 32, FEW_SIDES = 8;
 
 const SEEN = `#version 300 es
 precision highp float;
@@ -108,13 +109,20 @@ class Painter {
   constructor(canvas) {
     const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false }));
     if (!gl) throw new Error("there is no WebGL2 here");
-    this.strip = this.buffer(new Float32Array(Array.from({ length: 2 * SIDES + 2 }, (_, k) => [k % 2, (2 * Math.PI * (k >> 1)) / SIDES]).flat()));
-    this.square = this.buffer(new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]));
+    this.round = this.strip(SIDES);
+    this.angular = this.strip(FEW_SIDES);
+    this.square = { buffer: this.buffer(new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1])), corners: 4 };
     this.rods = this.program(...ROD);
     this.balls = this.program(...BALL);
     this.kept = {};
     gl.enable(gl.DEPTH_TEST);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+  }
+
+  /** The corners of a rod: at which end, and at which angle. */
+  strip(sides) {
+    const corners = Array.from({ length: 2 * sides + 2 }, (_, k) => [k % 2, (2 * Math.PI * (k >> 1)) / sides]);
+    return { buffer: this.buffer(new Float32Array(corners.flat())), corners: corners.length };
   }
 
   buffer(data) {
@@ -156,16 +164,16 @@ class Painter {
     if (scene.beads) {
       const balls = this.onCard("balls", [curve, colours], () => laidOut(colours.map((colour, i) => rod(curve.vertex(i), curve.vertex(i), 1, colour))));
       gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
-      this.pass(this.balls, this.square, 4, balls, scene, scene.radius);
+      this.pass(this.balls, this.square, balls, scene, scene.radius);
       gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
     }
     if (!scene.beads || scene.thin) {
       const rope = this.onCard("rope", [curve, colours], () => laidOut(ropeRods(curve, colours)));
-      this.pass(this.rods, this.strip, 2 * SIDES + 2, rope, scene, scene.beads ? 0.4 * scene.radius : scene.radius);
+      this.pass(this.rods, this.round, rope, scene, scene.beads ? 0.4 * scene.radius : scene.radius);
     }
     if (scene.thin) {
       const contacts = this.onCard("contacts", [curve], () => laidOut(contactRods(curve)));
-      this.pass(this.rods, this.strip, 2 * SIDES + 2, contacts, scene, 1);
+      this.pass(this.rods, this.angular, contacts, scene, 1);
     }
     this.mark(scene);
   }
@@ -176,15 +184,15 @@ class Painter {
     const { gl } = this;
     const sleeves = this.onCard("marks", [scene.marks], () => laidOut(scene.marks.map(({ vertex, colour }) => sleeve(scene.curve, vertex, colour))));
     const radius = Math.max(1.05 * scene.radius, scene.radius + 0.05);
-    this.pass(this.rods, this.strip, 2 * SIDES + 2, sleeves, scene, radius);
+    this.pass(this.rods, this.round, sleeves, scene, radius);
     gl.enable(gl.BLEND);
     gl.disable(gl.DEPTH_TEST);
-    this.pass(this.rods, this.strip, 2 * SIDES + 2, sleeves, scene, radius, 0.3);
+    this.pass(this.rods, this.round, sleeves, scene, radius, 0.3);
     gl.enable(gl.DEPTH_TEST);
     gl.disable(gl.BLEND);
   }
 
-  pass(program, shape, corners, rods, scene, radius, alpha = 1) {
+  pass(program, shape, rods, scene, radius, alpha = 1) {
     const { gl } = this, { turn, centre, shift, lens, near, far } = scene.look;
     gl.useProgram(program);
     const at = (name) => gl.getUniformLocation(program, name);
@@ -196,10 +204,9 @@ class Painter {
     gl.uniform3fv(at("back"), linear(scene.back));
     gl.uniform2f(at("depth"), -shift[2] - 0.5 * scene.curve.extent, -shift[2] + 1.6 * scene.curve.extent);
     gl.uniform1f(at("alpha"), alpha);
-    this.attribute(program, "at", shape, 2, 0, 0, 0);
-    gl.bindBuffer(gl.ARRAY_BUFFER, rods.buffer);
+    this.attribute(program, "at", shape.buffer, 2, 0, 0, 0);
     ["c0", "u0", "v0", "dye0", "c1", "u1", "v1", "dye1"].forEach((name, k) => this.attribute(program, name, rods.buffer, 3, 96, 12 * k, 1));
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, corners, rods.count);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, shape.corners, rods.count);
   }
 
   attribute(program, name, buffer, size, stride, offset, divisor) {
