@@ -1,4 +1,5 @@
 """Pictures, pages and models of tight ropes.
 
-May import `curve`, `invariants`, `model`, `naming`, `printing`, `starts` and `tables`.
+May import `certificates`, `curve`, `formats`, `invariants`, `model`, `naming`, `printing`, `starts` and
+`tables`.
 """

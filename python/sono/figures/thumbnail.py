@@ -1,4 +1,4 @@
-"""A small drawing of a rope: SVG in which the strand that is nearer to the eye lies over the others.
+"""A small drawing of a rope: paths of SVG in which the strand that is nearer to the eye lies over the others.
 
 The rope is cut into short pieces. Each lies one layer above all that it covers, and what follows each other
 along the rope in one layer is one line. So a drawing has as many layers as strands lie on each other, some
@@ -18,9 +18,6 @@ from sono.figures.turning import principal
 SIZE = 128
 """The width and height of the drawing's grid, whose points are whole numbers."""
 
-COLOURS = ("0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442")
-"""Of components, as the page of `view` has them."""
-
 THINNEST = 1 / 40
 """The radius of the rope in shares of the drawing, at least."""
 
@@ -30,7 +27,7 @@ EDGE = 1.5
 PIECE = 0.4
 """The length of a piece in radii."""
 
-MOST = 700
+MOST = 500
 """Pieces at most; those of longer ropes are longer."""
 
 BEND = 2.5
@@ -45,21 +42,14 @@ COVERS = 1.9
 
 @dataclass(frozen=True)
 class Drawing:
-    """Lines of a `width`, by layers, the lowest first: of each component in it the number and the path."""
+    """Lines of a `width`, by layers, the lowest first: of each component in it the number and the path.
+
+    A layer has first all its lines on dark edges, which are EDGE wider on either side and end where the lines
+    do, then all its lines in the colours of their components, with round ends.
+    """
 
     width: float
     layers: list[list[tuple[int, str]]]
-
-    def svg(self) -> str:
-        """Return it as SVG, as the page of a report shows it."""
-        lines = []
-        for layer in self.layers:
-            edge, wide = "".join(path for _, path in layer), self.width + 2 * EDGE
-            lines.append(f'<path d="{edge}" stroke="#0d1a26" stroke-width="{wide:g}" stroke-linecap="butt"/>')
-            lines += [f'<path d="{path}" stroke="#{COLOURS[c % len(COLOURS)]}"/>' for c, path in layer]
-        way = f'fill="none" stroke-width="{self.width:g}" stroke-linecap="round" stroke-linejoin="round"'
-        box = f'xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {SIZE} {SIZE}"'
-        return f"<svg {box} {way}>{''.join(lines)}</svg>"
 
 
 @dataclass(frozen=True)
@@ -81,8 +71,6 @@ def drawing(rope: CurveLike) -> Drawing:
     >>> hopf = drawing(sono.start("Hopf", known=True))
     >>> len(hopf.layers), {component for layer in hopf.layers for component, _ in layer}
     (3, {0, 1})
-    >>> hopf.svg().startswith("<svg"), len(hopf.svg()) < 3000
-    (True, True)
     """
     curve = Curve(rope)
     r_s = measure(curve).r_s
