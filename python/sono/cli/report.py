@@ -83,7 +83,8 @@ def command(
         complain(str(error))
         sys.exit(1)
     if not quiet:
-        complain(f"{index}: {len(ropes)} ropes, to be opened in a browser")
+        count = "1 rope" if len(ropes) == 1 else f"{len(ropes)} ropes"
+        complain(f"{index}: {count}, to be opened in a browser")
     sys.exit(max(code, int(len(ropes) < len(made))))
 
 
@@ -137,8 +138,9 @@ def _is_other(path: str) -> bool:
         return False
 
 
-def _by_number(name: str) -> list[tuple[int, str]]:
-    return [(int(number or 0), text) for text, number in re.findall(r"(\D*)(\d*)", name)]
+def _by_number(name: str) -> list[tuple[bool, int, str]]:
+    parts = re.findall(r"\d+|\D+", name)
+    return [(not part.isdecimal(), int(part) if part.isdecimal() else 0, part) for part in parts]
 
 
 @cache
@@ -194,11 +196,13 @@ def _made(task: Task) -> "Rope | str":
     from sono.figures.report.ropes import written
     from sono.formats import FormatError
     from sono.jobs.curvefiles import measures_of
+    from sono.starts.shapes import place
 
     try:
         curve = rope_of(task.source)
         measures_of(curve)  # says in which line it is none
-        _, row = _atlas().get(task.source.given, ("", {})) if task.source.knot else ("", {})
+        knot = place(task.source.given).knot if task.source.knot else ""
+        _, row = _atlas().get(knot, ("", {}))
         rope = written(Path(task.site), task.at, task.source.name, curve, row)
         rope.doubts.extend(curve.doubts())
         return rope

@@ -116,9 +116,8 @@ function link_to(rope) {
 
 function cell(rope, { key, digits, signed }) {
   const found = document.createElement(key === "knot" ? "th" : "td"), value = rope[key];
-  if (digits === null) found.className = "text";
+  found.className = kind({ key, digits });
   if (key === "knot") {
-    found.className = "text name";
     found.scope = "row";
     found.appendChild(link_to(rope)).textContent = found.title = value;
   } else {
@@ -127,6 +126,9 @@ function cell(rope, { key, digits, signed }) {
   }
   return found;
 }
+
+/** Return the class of a column's cells. */
+const kind = ({ key, digits }) => (key === "knot" ? "text name" : digits === null ? `text ${key}` : key);
 
 /** Draw a rope: in each layer first all lines on dark edges, then all in the colours of their components. */
 function drawn([width, layers]) {
@@ -160,10 +162,10 @@ function press(event) {
 // The beginning
 
 /** Head a column; the letter after _ in a label is set lower. */
-function headed({ key, header, digits }) {
-  const head = document.createElement("th"), button = head.appendChild(document.createElement("button"));
+function headed(column) {
+  const { key, header } = column, head = document.createElement("th"), button = head.appendChild(document.createElement("button"));
   const [name, lower = ""] = header.split("_");
-  Object.assign(head, { scope: "col", className: key === "knot" ? "text name" : digits === null ? "text" : "" });
+  Object.assign(head, { scope: "col", className: kind(column) });
   head.dataset.key = key;
   button.append(name);
   button.appendChild(document.createElement("sub")).textContent = lower.slice(0, 1);

@@ -1,6 +1,7 @@
 """What stands beside a rope on its page, below its measures: bounds, published lengths, and files."""
 
 from collections.abc import Iterable
+from decimal import ROUND_CEILING, Decimal
 from html import escape
 from urllib.parse import quote
 
@@ -23,10 +24,14 @@ def _bounds(row: Row, proof: Certificate | str) -> str:
         return f"<h2>Proven bound</h2>\n<p>None: {escape(proof)}</p>"
     terms = [("ropelength ≤", proof.rounded()), ("R is held by a", str(proof.decided_by))]
     if row["l_c_fine"] is not None:
-        finer = f"{row['l_c_fine']:.9g} with {row['n_fine']} vertices, which are not kept"
-        terms.append(("on finer edges ≤", finer))
+        terms.append((f"with {row['n_fine']} vertices ≤", f"{rounded_up(row['l_c_fine']):.6f}"))
     lines = "".join(f"<dt>{escape(term)}</dt><dd>{escape(text)}</dd>" for term, text in terms)
     return f"<h2>Proven bound</h2>\n<dl>{lines}</dl>"
+
+
+def rounded_up(bound: Value) -> float | None:
+    """Return a bound with as many digits as tables show."""
+    return None if bound is None else float(Decimal(bound).quantize(Decimal("1e-6"), ROUND_CEILING))
 
 
 def _published(row: Row) -> str:
@@ -35,7 +40,7 @@ def _published(row: Row) -> str:
     if not rows:
         return "<h2>Published</h2>\n<p>No ropelength of this type is in sono's table.</p>"
     heads = "".join(
-        f'<th scope="col">{head}</th>' for head in ("length / R", "kind", "source", "L<sub>a</sub> −")
+        f'<th scope="col">{head}</th>' for head in ("length / R", "kind", "source", "our L<sub>a</sub> −")
     )
     lines = "".join(_line(each) for each in rows)
     table = f'<table id="published"><thead><tr>{heads}</tr></thead><tbody>{lines}</tbody></table>'

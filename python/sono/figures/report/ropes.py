@@ -3,7 +3,6 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from sono._core import CurveError
 from sono.certificates import Certificate, certify
 from sono.curve import measure
 from sono.figures.plot.atlas import crossing_number
-from sono.figures.report.beside import beside
+from sono.figures.report.beside import beside, rounded_up
 from sono.figures.thumbnail import drawing
 from sono.figures.view import as_json, clean, described
 from sono.formats import FormatError, VertexFile
@@ -69,11 +68,12 @@ def written(folder: Path, at: str, name: str, file: VertexFile, atlas: Mapping[s
     }
     row |= {key: atlas.get(key) for key in ("n_fine", "l_c_fine")}
     compared = published.beside(row, published.table(), published.VALUE)
-    doubts += filter(None, [published.doubt(compared)])
+    if shown["known"] != "proven" and (doubt := published.doubt(compared)):
+        doubts.append(doubt)
     return Rope(
         _row(name, knot, at, compared) | {"type": shown["type"], "drawing": _drawn(file)},
         beside(at, compared, proof),
-        [f"{name}: {doubt}" for doubt in doubts],
+        doubts,
     )
 
 
@@ -105,27 +105,22 @@ def _certified(base: Path, file: VertexFile) -> Certificate | str:
 
 def _knot(name: str, type: str, known: str) -> tuple[str, list[str]]:
     """Return the knot that a rope is compared as, and what is wrong with its name: its type decides."""
-    name = published.name_of(name)
+    given, name = name, published.name_of(name)
     types = type.split(" or ") if known in ("proven", "invariants") else []
     if not starts.knows(name):
         return (types[0] if len(types) == 1 else name), []
     if not types or starts.canonical(name) in map(starts.canonical, types):
         return name, []
-    return types[0], [f"is no {name} but {type}, with which it is compared"]
+    return types[0], [f"{given}: is no {name} but {type}, with which it is compared"]
 
 
 def _row(name: str, knot: str, at: str, compared: Row) -> dict[str, Any]:
     """Return a row of the table; what it has of proven bounds is rounded up."""
     keys = ("n", "dl", "l_p", "l_a", "published", "source", "l_a_difference", "l_c_difference")
     figures: dict[str, Any] = {key: compared[key] for key in keys}
-    figures |= {key: _rounded_up(compared[key]) for key in ("l_c", "l_c_fine")}
+    figures |= {key: rounded_up(compared[key]) for key in ("l_c", "l_c_fine")}
     crossings = crossing_number(knot) if starts.knows(knot) else None
-    return {"knot": clean(name), "family": at.split("/")[0], "crossings": crossings, "at": at, **figures}
-
-
-def _rounded_up(bound: Any) -> float | None:
-    """Return a bound with so many digits as the table shows."""
-    return None if bound is None else float(Decimal(bound).quantize(Decimal("1e-6"), ROUND_CEILING))
+    return {"knot": clean(name), "family": family(knot), "crossings": crossings, "at": at, **figures}
 
 
 def _drawn(file: VertexFile) -> list[Any]:

@@ -23,8 +23,14 @@ INDEX = "index.html"
 ALLOWED = "'self' file:"
 """Whence scripts and styles may come: from where the page is."""
 
-HEADERS = {"family": "family", "l_c": "certified L_c"}
-"""Those that other tables have not, or otherwise."""
+HEADERS = {
+    "family": "family",
+    "l_c": "L_c certified",
+    "l_c_fine": "L_c fine",
+    "l_a_difference": "L_a − published",
+    "l_c_difference": "L_c − published",
+}
+"""Those that other tables have not, or without room for a line's end."""
 
 SHOWN = (
     *("knot", "family", "crossings", "n", "dl", "l_p", "l_c", "l_c_fine", "l_a"),
