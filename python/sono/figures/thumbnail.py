@@ -158,5 +158,5 @@ def _runs(there: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
 
 def _path(points: NDArray[np.int64]) -> str:
     """Return a line through points, each relative to the one before it."""
-    steps = [(x, y) for x, y in (b - a for a, b in pairwise(points)) if x or y]
+    steps = [(x, y) for x, y in (b - a for a, b in pairwise(points)) if x or y] or [(0, 0)]
     return f"M{points[0][0]} {points[0][1]}l" + " ".join(f"{x} {y}" for x, y in steps).replace(" -", "-")
