@@ -1,4 +1,4 @@
-"""A report in headless Chromium, from a folder: its table sorts and searches, and opens the page of a rope."""
+"""A report in headless Chromium, from a folder: its table sorts and searches, and opens a rope's page."""
 
 import json
 from collections.abc import Iterator
