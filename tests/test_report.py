@@ -4,7 +4,7 @@ import json
 import re
 from collections.abc import Callable, Iterator
 from html.parser import HTMLParser
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -188,6 +188,20 @@ def test_what_tighten_writes(sono: Sono, site: Site) -> None:
     assert found["3_1.n60"]["type"] == "3_1"
 
 
+def test_a_family_and_a_folder_of_its_name(sono: Sono, folder: Path) -> None:
+    (folder / "torus").mkdir()
+    write(folder / "torus" / "mine.txt", starts.start("3_1"))
+    (folder / "composites").mkdir()
+    done = sono("report", "composites", "torus/", "-o", "all")
+    assert "composites: is of the atlas, and not the folder" in done.stderr
+    assert done.exit_code == 0
+    found = rows(folder / "all")
+    assert list(found)[-1] == "mine"
+    assert len(found) > 5
+    assert {row["family"] for row in found.values()} == {"composites", "knots"}
+    assert all(row["type"] == name for name, row in found.items() if name != "mine")
+
+
 def test_several_curves_of_one_file_and_of_one_name(site: Site, folder: Path) -> None:
     for name in ("a", "b"):
         (folder / name).mkdir()
@@ -303,7 +317,7 @@ def test_what_is_nearer_to_the_eye_is_in_front(name: str) -> None:
     every = np.concatenate(seen)
     middle, wide = (every.max(axis=0) + every.min(axis=0)) / 2, np.ptp(every, axis=0)[:2].max()
     scale = (SIZE - 2 * EDGE) / (wide + 2)
-    pixels = np.stack(np.mgrid[2:SIZE:4, 2:SIZE:4], axis=-1).reshape(-1, 2)
+    pixels = np.array(list(product(range(2, SIZE, 4), repeat=2)))
     there, painted = np.full((2, len(pixels)), -1)
     height = np.full(len(pixels), -np.inf)
     for c, component in enumerate(seen):

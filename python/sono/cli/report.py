@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -70,7 +71,7 @@ def command(
     index = os.path.join(output, INDEX)
     if os.path.exists(index) and not force:
         raise click.UsageError(f"{index} exists; --force overwrites it, -o names another folder")
-    sources, code = _sources(given, close)
+    sources, code = _sources(given, close, quiet)
     if sources:
         places.make_folder(output)
     made = list(_told(_made_all(list(_tasks(sources, output)), jobs), len(sources), quiet))
@@ -93,7 +94,7 @@ def _title(given: Sequence[str]) -> str:
     return "Ropes: " + ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
 
 
-def _sources(given: Sequence[str], close: "Close | None") -> "tuple[list[Source], int]":
+def _sources(given: Sequence[str], close: "Close | None", quiet: bool) -> "tuple[list[Source], int]":
     """Return the curves of what is given, and the exit code; a folder without any is told."""
     from sono.jobs.sources import Source, curves
     from sono.starts.shapes import FAMILIES
@@ -101,16 +102,17 @@ def _sources(given: Sequence[str], close: "Close | None") -> "tuple[list[Source]
     found: list[Source] = []
     code = 0
     for one in given:
-        if os.path.isdir(one):
+        if one in (ATLAS, *FAMILIES):
+            if os.path.isdir(one) and not quiet:
+                complain(f"{one}: is of the atlas, and not the folder of this name, which is {one}/")
+            found += [Source(knot) for knot, (family, _) in _atlas().items() if one in (ATLAS, family)]
+        elif os.path.isdir(one):
             files = _files(one)
             if not files:
-                complain(
-                    f"{one}: no file of a curve is in this folder; `sono tighten NAME -o {one}` writes some"
-                )
+                cure = f"`sono tighten NAME -o {shlex.quote(one)}` writes some"
+                complain(f"{one}: no file of a curve is in this folder; {cure}")
                 code = 1
             found += [curve for file in files for curve in curves(file, close)]
-        elif one in (ATLAS, *FAMILIES):
-            found += [Source(knot) for knot, (family, _) in _atlas().items() if one in (ATLAS, family)]
         else:
             found += curves(one, close)
     return found, code
@@ -174,13 +176,15 @@ def _made_all(tasks: Sequence[Task], jobs: int) -> "Iterator[Rope | str]":
         yield from map(_made, tasks)
         return
     from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
+    from multiprocessing import active_children, get_context
 
     with ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_leave_ctrl_c) as pool:
         try:
             yield from pool.map(_made, tasks, chunksize=4)
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            for process in active_children():
+                process.terminate()
+            pool.shutdown(cancel_futures=True)
             raise
 
 
