@@ -2,26 +2,23 @@
 
 import os
 import re
-import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from sono.cli import options, places
 from sono.cli.each import rope_of
+from sono.cli.reported import atlas, gathered
 from sono.cli.streams import complain
 
 if TYPE_CHECKING:
     from sono.figures.report.ropes import Rope
     from sono.formats import Close
     from sono.jobs.sources import Source
-
-ATLAS = "atlas"
 
 _UNSAFE = re.compile(r"[^\w+().,#^{}-]")
 """What of a name is not taken into the names of a rope's files."""
@@ -71,7 +68,7 @@ def command(
     index = os.path.join(output, INDEX)
     if os.path.exists(index) and not force:
         raise click.UsageError(f"{index} exists; --force overwrites it, -o names another folder")
-    sources, code = _sources(given, close, quiet)
+    sources, code = gathered(given, close, quiet)
     if sources:
         places.make_folder(output)
     made = list(_told(_made_all(list(_tasks(sources, output)), jobs), len(sources), quiet))
@@ -92,66 +89,6 @@ def command(
 def _title(given: Sequence[str]) -> str:
     names = [os.path.basename(one.rstrip("/" + os.sep)) or one for one in given]
     return "Ropes: " + ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
-
-
-def _sources(given: Sequence[str], close: "Close | None", quiet: bool) -> "tuple[list[Source], int]":
-    """Return the curves of what is given, and the exit code; a folder without any is told."""
-    from sono.jobs.sources import Source, curves
-    from sono.starts.shapes import FAMILIES
-
-    found: list[Source] = []
-    code = 0
-    for one in given:
-        if one in (ATLAS, *FAMILIES):
-            if os.path.isdir(one) and not quiet:
-                complain(f"{one}: is of the atlas, and not the folder of this name, which is {one}/")
-            found += [Source(knot) for knot, (family, _) in _atlas().items() if one in (ATLAS, family)]
-        elif os.path.isdir(one):
-            files = _files(one)
-            if not files:
-                cure = f"`sono tighten NAME -o {shlex.quote(one)}` writes some"
-                complain(f"{one}: no file of a curve is in this folder; {cure}")
-                code = 1
-            found += [curve for file in files for curve in curves(file, close)]
-        else:
-            found += curves(one, close)
-    return found, code
-
-
-def _files(folder: str) -> list[str]:
-    """Return the files in a folder that may be of curves by their names, and are no tables, in order."""
-    from sono import formats
-
-    files = (entry.path for entry in os.scandir(folder) if entry.is_file() and not entry.name.startswith("."))
-    suffixes = tuple(suffix for suffix in formats.SUFFIXES if suffix)
-    named = [path for path in files if formats.unpacked(path.lower()).endswith(suffixes)]
-    return sorted((path for path in named if not _is_other(path)), key=_by_number)
-
-
-def _is_other(path: str) -> bool:
-    """Tell whether this is a certificate or a table. What cannot be read is told when its turn comes."""
-    from sono import formats, tables
-
-    if not path.lower().endswith((".json", ".csv")):
-        return False
-    try:
-        return path.endswith(".certificate.json") or tables.recognises(formats.load(path)[1])
-    except formats.FormatError:
-        return False
-
-
-def _by_number(name: str) -> list[tuple[bool, int, str]]:
-    parts = re.findall(r"\d+|\D+", name)
-    return [(not part.isdecimal(), int(part) if part.isdecimal() else 0, part) for part in parts]
-
-
-@cache
-def _atlas() -> dict[str, tuple[str, dict[str, Any]]]:
-    """Return the family and the row of each knot of the atlas that the package carries."""
-    from sono.figures.plot.atlas import rows
-    from sono.starts.shapes import place
-
-    return {str(row["knot"]): (place(str(row["knot"])).family, dict(row)) for row in rows()}
 
 
 def _tasks(sources: "Sequence[Source]", site: str) -> Iterator[Task]:
@@ -176,11 +113,14 @@ def _made_all(tasks: Sequence[Task], jobs: int) -> "Iterator[Rope | str]":
         yield from map(_made, tasks)
         return
     from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
     from multiprocessing import active_children, get_context
 
     with ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_leave_ctrl_c) as pool:
         try:
             yield from pool.map(_made, tasks, chunksize=4)
+        except BrokenProcessPool as error:  # the system kills those that take too much
+            raise MemoryError from error
         except BaseException:
             for process in active_children():
                 process.terminate()
@@ -200,14 +140,15 @@ def _made(task: Task) -> "Rope | str":
     from sono.figures.report.ropes import written
     from sono.formats import FormatError
     from sono.jobs.curvefiles import measures_of
+    from sono.patience import patiently
     from sono.starts.shapes import place
 
     try:
         curve = rope_of(task.source)
         measures_of(curve)  # says in which line it is none
         knot = place(task.source.given).knot if task.source.knot else ""
-        _, row = _atlas().get(knot, ("", {}))
-        rope = written(Path(task.site), task.at, task.source.name, curve, row)
+        _, row = atlas().get(knot, ("", {}))
+        rope = patiently(lambda: written(Path(task.site), task.at, task.source.name, curve, row))
         rope.doubts.extend(curve.doubts())
         return rope
     except FormatError as error:
