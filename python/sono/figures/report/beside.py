@@ -40,7 +40,7 @@ def _published(row: Row) -> str:
     if not rows:
         return "<h2>Published</h2>\n<p>No ropelength of this type is in sono's table.</p>"
     heads = "".join(
-        f'<th scope="col">{head}</th>' for head in ("length / R", "kind", "source", "our L<sub>a</sub> −")
+        f'<th scope="col">{head}</th>' for head in ("length / R", "kind", "source", "L<sub>a</sub> − it")
     )
     lines = "".join(_line(each) for each in rows)
     table = f'<table id="published"><thead><tr>{heads}</tr></thead><tbody>{lines}</tbody></table>'
