@@ -28,6 +28,7 @@ COMMANDS = {
     "identify": "Name the knot or link of curves.",
     "measure": "Measure curves: dl, L_p, L_c, L_a.",
     "plot": "Draw pictures of ropes and of tables.",
+    "report": "Write pages of many ropes, for a browser.",
     "search": "Find the shortest tight rope of a knot.",
     "start": "Write the starting conformation of a knot.",
     "tighten": "Tighten curves and write the paper's table.",

@@ -48,7 +48,7 @@ class Batch:
         """Show rows in a table, and unless `quiet` progress and notes on standard error."""
         self.table = table
         self.quiet = quiet
-        self.bar = _bar(quiet)
+        self.bar = bar(quiet)
         self.lock = threading.Lock()
         self.failed = False
         self.stop = ""
@@ -181,7 +181,7 @@ def _wait(futures: "list[Future[None]]") -> None:
             future.result()
 
 
-def _bar(quiet: bool) -> "Bar":
+def bar(quiet: bool) -> "Bar":
     """A progress bar on standard error, if that is a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn

@@ -73,19 +73,65 @@ def page(curves: Sequence[tuple[str, CurveLike]], title: str) -> str:
     >>> html.startswith("<!doctype html>"), len(html) < 60_000
     (True, True)
     """
-    ropes = [_scaled(as_components(curve)) for _, curve in curves]
-    names = [name for name, _ in curves]
-    frames = turned([rope for rope, _ in ropes])
-    data = [
-        _described(name, rope, radius) | {"frame": frame.round(6).tolist()}
-        for name, (rope, radius), frame in zip(names, ropes, frames, strict=True)
-    ]
-    return Template(_part("page.html")).substitute(
-        title=escape(_clean(title)),
-        style=_part("view.css"),
-        script="\n".join(_part(f"{name}.js") for name in SCRIPTS),
-        data=json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
+    return linked(
+        title,
+        Links(
+            allowed="'unsafe-inline'",
+            style=f"<style>\n{style()}</style>",
+            data=f'<script type="application/json" id="data">{as_json(described(curves))}</script>',
+            script=f"<script>\n{script()}</script>",
+        ),
     )
+
+
+@dataclass(frozen=True)
+class Links:
+    """The HTML that gives a page its style, its data and its script, and whence these are `allowed` to come.
+
+    What else there is in the column beside the rope stands `above` and `below`.
+    """
+
+    allowed: str
+    style: str
+    data: str
+    script: str
+    above: str = ""
+    below: str = ""
+
+
+def linked(title: str, links: Links) -> str:
+    """Return a page that has its style, data and script by links; the data are in its element "data"."""
+    return Template(part("view", "page.html")).substitute(vars(links), title=escape(clean(title)))
+
+
+def style() -> str:
+    """Return the style of a page."""
+    return part("view", "theme.css") + part("view", "view.css")
+
+
+def script() -> str:
+    """Return the script of a page."""
+    return wrapped("\n".join(part("view", f"{name}.js") for name in SCRIPTS))
+
+
+def wrapped(script: str) -> str:
+    """Return a script that leaves no names behind."""
+    return f'"use strict";\n(() => {{\n{script}}})();\n'
+
+
+def described(curves: Sequence[tuple[str, CurveLike]]) -> list[dict[str, Any]]:
+    """Return what a page knows of curves, each with its name; it raises what `page` does."""
+    ropes = [_scaled(as_components(curve)) for _, curve in curves]
+    frames = turned([rope for rope, _ in ropes])
+    return [
+        _described(name, rope, radius) | {"frame": frame.round(6).tolist()}
+        for (name, _), (rope, radius), frame in zip(curves, ropes, frames, strict=True)
+    ]
+
+
+def as_json(data: object) -> str:
+    """Return data as JSON that ends no script."""
+    return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def titled(names: Sequence[str]) -> str:
@@ -119,10 +165,11 @@ def _described(name: str, rope: list[Floats], radius: float) -> dict[str, Any]:
     """Return what the page knows of a rope."""
     found = forces(rope)
     strong = found.pressing > WEAKEST * found.pressing.max(initial=0)
-    kind = _type(rope)
+    kind, known = _type(rope)
     return {
-        "name": _clean(name or kind),
+        "name": clean(name or kind),
         "type": kind,
+        "known": known,
         "rows": [*_rows(measure(rope)), ("R_s as given", f"{radius:.9g}")],
         "sizes": list(map(len, rope)),
         "vertices": _packed(np.concatenate(rope), "<f4"),
@@ -132,13 +179,13 @@ def _described(name: str, rope: list[Floats], radius: float) -> dict[str, Any]:
     }
 
 
-def _type(rope: Components) -> str:
-    """Say what knot or link it is."""
+def _type(rope: Components) -> tuple[str, str]:
+    """Say what knot or link it is, and how that is known."""
     try:
         found = identify(rope)
     except TooEntangledError:
-        return "too entangled to be identified"
-    return found.name or found.known
+        return "too entangled to be identified", "undecided"
+    return found.name or found.known, found.known
 
 
 def _rows(measures: Measures) -> list[tuple[str, str]]:
@@ -154,10 +201,11 @@ def _packed(array: NDArray[Any], kind: str) -> str:
     return base64.b64encode(array.astype(kind).tobytes()).decode()
 
 
-def _clean(text: str) -> str:
+def clean(text: str) -> str:
     """Return text as a page can have it: without what steers terminals, and bytes that were no text."""
     return printable(text).encode(errors="replace").decode()
 
 
-def _part(name: str) -> str:
-    return resources.files("sono").joinpath("data", "view", name).read_text(encoding="utf-8")
+def part(folder: str, name: str) -> str:
+    """Return a part of a page: a file in a folder of `data`."""
+    return resources.files("sono").joinpath("data", folder, name).read_text(encoding="utf-8")
