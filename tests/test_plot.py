@@ -10,8 +10,9 @@ import sono
 from sono.figures.plot import along, atlas, sheet
 from sono.figures.plot.balls import FROM_LIGHT, LIGHT, Balls, picture
 from sono.figures.plot.convergence import Fit
-from sono.figures.plot.curvature import curvature, torsion
+from sono.figures.plot.curvature import torsion
 from sono.figures.plot.views import seen
+from sono.shape import curvature
 
 pytest.importorskip("matplotlib")
 

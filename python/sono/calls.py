@@ -270,6 +270,11 @@ def search(
     return [replace(minimum, curve=Curve(minimum.curve)) for minimum in best]
 
 
+def rope_of(rope: Rope) -> list[Any]:
+    """Return the components of a rope; a name is the atlas's rope of the knot. Raises `ValueError`."""
+    return as_components(start(rope, known=True) if isinstance(rope, str) else cast("CurveLike", rope))
+
+
 def _known(name: str) -> list[Any]:
     """Return the atlas's rope of a knot. Raises `ValueError` if there is none."""
     if (shape := starts.known(name)) is None:

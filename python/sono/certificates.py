@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, cast
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from sono import _core
-from sono.calls import Rope, start
-from sono.curve import CurveLike, as_components, polygon
+from sono.calls import Rope, rope_of
+from sono.curve import polygon as polygon_of
 from sono.records import Record
 
 FORMAT, VERSION = "sono certificate", 1
@@ -77,21 +77,7 @@ class Certificate(Record):
         Raises `OSError` for a file that cannot be read, `ValueError` for one that does not hold these
         vertices in plain rows of x y z.
         """
-        data = Path(file).read_bytes()
-        if polygon_in(data) != self.polygon:
-            name = os.fspath(file)
-            raise ValueError(f"{name}: does not hold these vertices in plain rows of x y z; sono.write does")
-        figures = self.to_dict()
-        del figures["polygon"]
-        return {
-            "format": FORMAT,
-            "version": VERSION,
-            "program": f"sono {version('sono')}",
-            "file": os.path.basename(file),
-            "sha256": hashlib.sha256(data).hexdigest(),
-            "curve": None,
-            **figures,
-        }
+        return document_of(file, self.polygon, (FORMAT, VERSION), {"curve": None, **self.to_dict()})
 
     def rounded(self, digits: int = 14) -> str:
         """Return the bound with fewer digits, rounded up."""
@@ -109,9 +95,7 @@ def certify(vertices: Rope) -> Certificate:
     >>> sono.certify(sono.tighten("3_1", 240)).rounded(6)
     '32.7919'
     """
-    if isinstance(vertices, str):
-        vertices = start(vertices, known=True)
-    components = as_components(cast("CurveLike", vertices))
+    components = rope_of(vertices)
     bound = _core.certify(components)
     up, down = _rounded_up(DIGITS).create_decimal, Context(DIGITS, ROUND_FLOOR).create_decimal
     return Certificate(
@@ -124,8 +108,30 @@ def certify(vertices: Rope) -> Certificate:
         length=up(bound["inscribed_length"]),
         l_c=up(bound["l_c"]),
         decided_by=Decider(bound["condition"], tuple(bound["vertices"])),
-        polygon=polygon(components),
+        polygon=polygon_of(components),
     )
+
+
+def document_of(
+    file: str | os.PathLike[str], polygon: str, format: tuple[str, int], figures: dict[str, Any]
+) -> dict[str, Any]:
+    """Return the document, of a format and its version, of a file that holds a `polygon`: what is proven of it.
+
+    Raises `OSError` for a file that cannot be read, `ValueError` for one that does not hold these vertices in
+    plain rows of x y z.
+    """
+    data = Path(file).read_bytes()
+    if polygon_in(data) != polygon:
+        name = os.fspath(file)
+        raise ValueError(f"{name}: does not hold these vertices in plain rows of x y z; sono.write does")
+    head = {
+        "format": format[0],
+        "version": format[1],
+        "program": f"sono {version('sono')}",
+        "file": os.path.basename(file),
+        "sha256": hashlib.sha256(data).hexdigest(),
+    }
+    return head | {key: figure for key, figure in figures.items() if key != "polygon"}
 
 
 def _rounded_up(digits: int) -> Context:
@@ -146,6 +152,6 @@ def polygon_in(data: bytes) -> str | None:
                 parts[-1].append(list(map(float, cells)))
             elif not comment:
                 parts.append([])
-        return polygon([np.array(part) for part in parts if part])
+        return polygon_of([np.array(part) for part in parts if part])
     except ValueError:
         return None

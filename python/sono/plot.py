@@ -18,8 +18,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
-from sono.calls import Rope, measure, start
-from sono.curve import Components, Forces, Measures, as_components
+from sono.calls import Rope, measure, rope_of
+from sono.curve import Components, Forces, Measures
 from sono.curve import forces as fitted
 from sono.figures.plot import atlas as _atlas
 from sono.figures.plot import contacts as _contacts
@@ -165,19 +165,12 @@ def _row(point: Any) -> Row:
     """Return what a rope measures as a row, or a row as it is."""
     if isinstance(point, Mapping):
         return point
-    plain = (
-        point.to_dict() if isinstance(point, Minimum | Measures) else measure(_components(point)).to_dict()
-    )
+    plain = point.to_dict() if isinstance(point, Minimum | Measures) else measure(rope_of(point)).to_dict()
     return cast("Row", plain)
-
-
-def _components(rope: Rope) -> Components:
-    """Return the components of a rope; a name is the atlas's rope of the knot."""
-    return as_components(cast("Any", start(rope, known=True) if isinstance(rope, str) else rope))
 
 
 def _scaled(rope: Rope) -> Components:
     """Return the components of a rope at R_s = 1, likewise."""
-    components = _components(rope)
+    components = rope_of(rope)
     r_s = measure(components).r_s
     return [component / r_s for component in components]

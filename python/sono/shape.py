@@ -83,6 +83,18 @@ def descriptors(vertices: CurveLike) -> Descriptors:
     )
 
 
+def curvature(component: Floats) -> Floats:
+    """Return the curvatures (n,) at the vertices, 1/Rad: 2 tan(theta/2) over the shorter edge at a corner."""
+    after = np.roll(component, -1, axis=0) - component
+    before = np.roll(after, 1, axis=0)
+    tangent = np.linalg.norm(np.cross(before, after), axis=1)
+    lengths = np.linalg.norm(after, axis=1)
+    # tan(theta/2) = sin theta / (1 + cos theta)
+    half = tangent / (lengths * np.roll(lengths, 1) + (before * after).sum(axis=1))
+    curvatures: Floats = 2 * half / np.minimum(lengths, np.roll(lengths, 1))
+    return curvatures
+
+
 def _gyration(curve: Components) -> tuple[float, float, float]:
     """Return the eigenvalues of the second moments of a wire about its centre."""
     start = np.concatenate(curve)

@@ -4,22 +4,19 @@ The thickness is guessed from points of the curve, a little low, and proven in w
 `check_thickness`, which takes nothing from here but the guess. docs/theorem.md has the theorem, (T5) to (T7).
 """
 
-import hashlib
 import os
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
-from importlib.metadata import version
-from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sono import check_thickness
-from sono.calls import Rope, start
-from sono.certificates import DIGITS, certify, polygon_in
-from sono.curve import Components, CurveLike, as_components, polygon
+from sono.calls import Rope, rope_of
+from sono.certificates import DIGITS, certify, document_of
+from sono.curve import Components, polygon
 from sono.records import Record
 
 SHARES = (0.98, 0.95, 0.9, 0.8, 0.6, 0.3)
@@ -56,20 +53,7 @@ class Thickness(Record):
         Raises `OSError` for a file that cannot be read, `ValueError` for one that does not hold these
         vertices in plain rows of x y z.
         """
-        data = Path(file).read_bytes()
-        if polygon_in(data) != self.polygon:
-            name = os.fspath(file)
-            raise ValueError(f"{name}: does not hold these vertices in plain rows of x y z; sono.write does")
-        figures = self.to_dict()
-        del figures["polygon"]
-        return {
-            "format": "sono thickness",
-            "version": 1,
-            "program": f"sono {version('sono')}",
-            "file": os.path.basename(file),
-            "sha256": hashlib.sha256(data).hexdigest(),
-            **figures,
-        }
+        return document_of(file, self.polygon, ("sono thickness", 1), self.to_dict())
 
     def rounded(self, digits: int = 14) -> str:
         """Return the bound with fewer digits, rounded up."""
@@ -87,9 +71,7 @@ def sharpen(vertices: Rope) -> Thickness:
     >>> 25.1327 < sono.sharpen("Hopf").l_k < 25.134 < sono.certify("Hopf").l_c
     True
     """
-    if isinstance(vertices, str):
-        vertices = start(vertices, known=True)
-    components = as_components(cast("CurveLike", vertices))
+    components = rope_of(vertices)
     certificate = certify(components)
     up, down = Context(DIGITS, ROUND_CEILING), Context(DIGITS, ROUND_FLOOR)
     r_c = float(certificate.r_c)

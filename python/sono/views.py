@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import cast
 
-from sono.calls import Rope, start
+from sono.calls import Rope, rope_of
 from sono.curve import CurveLike
 from sono.figures.view import View, shown
 
@@ -34,7 +33,5 @@ def _named(rope: Rope | Mapping[str, Rope]) -> Iterator[tuple[str, CurveLike]]:
     if isinstance(rope, Mapping):
         for name, one in rope.items():
             yield name, next(_named(one))[1]
-    elif isinstance(rope, str):
-        yield rope, start(rope, known=True)
     else:
-        yield "", cast("CurveLike", rope)
+        yield rope if isinstance(rope, str) else "", rope_of(rope)

@@ -1,10 +1,8 @@
 """What `sono.export` does: a rope as a file for a printer."""
 
 import os
-from typing import cast
 
-from sono.calls import Rope, start
-from sono.curve import CurveLike, as_components
+from sono.calls import Rope, rope_of
 from sono.figures import solidfiles
 from sono.figures.solids import Solid, solid
 
@@ -37,7 +35,6 @@ def export(
     (True, 2, 2.3)
     """
     format = solidfiles.by_suffix(os.fspath(path))
-    curve = start(rope, known=True) if isinstance(rope, str) else rope
-    made = solid(as_components(cast("CurveLike", curve)), rope_diameter, gap, tolerance)
+    made = solid(rope_of(rope), rope_diameter, gap, tolerance)
     solidfiles.write(os.fspath(path), made, format)
     return made

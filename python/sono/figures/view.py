@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sono import shape
 from sono.curve import Components, Curve, CurveLike, Floats, Measures, as_components, forces, measure
 from sono.figures.turning import turned
 from sono.invariants import TooEntangledError
@@ -142,17 +143,7 @@ def titled(names: Sequence[str]) -> str:
 
 def curvature(rope: Components) -> Floats:
     """Return the curvature (n,) at each vertex: one over the radius of its inscribed arc."""
-    return np.concatenate([_curvature(component) for component in rope])
-
-
-def _curvature(component: Floats) -> Floats:
-    after = np.roll(component, -1, axis=0) - component
-    before = np.roll(after, 1, axis=0)
-    edge = np.linalg.norm(after, axis=1)
-    shorter = np.minimum(edge, np.roll(edge, 1))
-    turn = np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), (before * after).sum(axis=1))
-    found: Floats = 2 * np.tan(turn / 2) / shorter
-    return found
+    return np.concatenate([shape.curvature(component) for component in rope])
 
 
 def _scaled(components: list[Floats]) -> tuple[list[Floats], float]:

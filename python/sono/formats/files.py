@@ -95,6 +95,14 @@ def save(target: str, content: str | bytes) -> None:
         raise FormatError(f"{target}: cannot be written: {error.strerror or error}") from error
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those that it is in. Raises `FormatError`."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FormatError(f"{folder}: cannot be made: {error.strerror}") from error
+
+
 def part_of(path: str | os.PathLike[str]) -> Path:
     """Return a new name for what is to replace a file, in the folder where the file itself is."""
     # Anywhere else, on another file system say, a rename would not be atomic.

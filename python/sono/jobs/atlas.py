@@ -179,8 +179,9 @@ def _finer(knot: str, curve: Components, watch: Watch) -> tuple[Components, Row]
         if again.converged and _shorter(again.curve, curve):
             curve = _centred(again.curve)
         confirmed_type(knot, list(fine.curve), knot)
-        finer = {"n_fine": fine.measures.n, "l_c_fine": _certified(fine.curve)}
-        if isinstance(bound, float) and _certified(fine.curve) <= bound:
+        l_c = _certified(fine.curve)
+        finer = {"n_fine": fine.measures.n, "l_c_fine": l_c}
+        if isinstance(bound, float) and l_c <= bound:
             break
     return curve, finer
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from sono import formats, tables
 from sono.formats import FormatError
+from sono.formats.files import make_folder
 from sono.starts import archive
 from sono.tables import Row
 
@@ -55,10 +56,7 @@ class Family:
         """Keep a knot's row and its rope. Raises `FormatError` where they cannot be written."""
         knot = str(row["knot"])
         with self.lock:
-            try:
-                self.folder.mkdir(parents=True, exist_ok=True)
-            except OSError as error:
-                raise FormatError(f"{self.folder}: cannot be made: {error.strerror}") from error
+            make_folder(self.folder)
             self.rows[knot] = row
             if self.ropes.get(knot) != rope:
                 self.ropes[knot] = rope

@@ -7,6 +7,7 @@ import numpy as np
 from sono.curve import Components, Floats
 from sono.figures.plot.along import arclength, edges, mark
 from sono.figures.plot.sheet import library
+from sono.shape import curvature
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,18 +23,6 @@ TURNED = 2.0
 
 HEIGHT = 3.0
 """What is drawn ends above and below this at the latest."""
-
-
-def curvature(component: Floats) -> Floats:
-    """Return the curvatures (n,) at the vertices, 1/Rad: 2 tan(theta/2) over the shorter edge at a corner."""
-    after = np.roll(component, -1, axis=0) - component
-    before = np.roll(after, 1, axis=0)
-    tangent = np.linalg.norm(np.cross(before, after), axis=1)
-    lengths = edges(component)
-    # tan(theta/2) = sin theta / (1 + cos theta)
-    half = tangent / (lengths * np.roll(lengths, 1) + (before * after).sum(axis=1))
-    curvatures: Floats = 2 * half / np.minimum(lengths, np.roll(lengths, 1))
-    return curvatures
 
 
 def torsion(component: Floats) -> Floats:

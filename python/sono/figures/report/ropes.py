@@ -14,7 +14,8 @@ from sono.figures.plot.atlas import crossing_number
 from sono.figures.report.beside import beside, rounded_up
 from sono.figures.thumbnail import drawing
 from sono.figures.view import as_json, clean, described
-from sono.formats import FormatError, VertexFile
+from sono.formats import VertexFile
+from sono.formats.files import make_folder
 from sono.starts.shapes import place
 from sono.tables import Row, published
 
@@ -75,14 +76,6 @@ def written(folder: Path, at: str, name: str, file: VertexFile, atlas: Mapping[s
         beside(at, compared, proof),
         doubts,
     )
-
-
-def make_folder(folder: Path) -> None:
-    """Make a folder of the report. Raises `FormatError`."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FormatError(f"{folder}: cannot be made: {error.strerror}") from error
 
 
 def _measured(file: VertexFile) -> dict[str, Any]:

@@ -13,9 +13,10 @@ from urllib.parse import quote
 
 from sono import formats
 from sono.figures import view
-from sono.figures.report.ropes import Rope, make_folder
+from sono.figures.report.ropes import Rope
 from sono.figures.thumbnail import EDGE, SIZE
 from sono.figures.view import Links, as_json, clean, linked, part
+from sono.formats.files import make_folder
 from sono.tables import COLUMNS
 
 INDEX = "index.html"
