@@ -115,7 +115,7 @@ def certify(vertices: Rope) -> Certificate:
 def document_of(
     file: str | os.PathLike[str], polygon: str, format: tuple[str, int], figures: dict[str, Any]
 ) -> dict[str, Any]:
-    """Return the document, of a format and its version, of a file that holds a `polygon`: what is proven of it.
+    """Return the document, of a format and its version, of a file that holds a `polygon`: what is proven.
 
     Raises `OSError` for a file that cannot be read, `ValueError` for one that does not hold these vertices in
     plain rows of x y z.
