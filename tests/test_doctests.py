@@ -19,7 +19,7 @@ def test_examples(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", sorted(Path(__file__).parent.parent.glob("docs/*.md")), ids=lambda page: str(page.name)
+    "page", sorted(Path(__file__).parent.parent.glob("docs/**/*.md")), ids=lambda page: str(page.name)
 )
 def test_pages(page: Path) -> None:
     assert doctest.testfile(str(page), module_relative=False, encoding="utf-8").failed == 0
