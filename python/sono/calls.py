@@ -102,7 +102,8 @@ def start(name: str, variant: int = 0, *, known: bool = False) -> Curve:
     A name may be a code, such as "pd:[(1,5,2,4),(3,1,4,6),(5,3,6,2)]", "dt:4 6 2" or "gauss:1 -2 3 -1 2 -3";
     docs/reference/names.md has all kinds. Each `variant` is another conformation of the same type, drawn from
     a planar diagram if it is negative. If `known`, it is the rope that the atlas has of the knot or link
-    instead, tight at R_s = 1 on edges of about 0.2. Raises `ValueError`, with the nearest known name, for others.
+    instead, tight at R_s = 1 on edges of about 0.2. Raises `ValueError`, with the nearest known name, for
+    others.
 
     >>> start("3_1"), len(start("P(-2,3,7)")), len(start("gauss:1 -2 | 2 -1")), start("3_1", known=True)
     (Curve(69 vertices), 1, 2, Curve(164 vertices))
