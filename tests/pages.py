@@ -1,8 +1,8 @@
 """Runs what pages of the documentation say, block after block, in one folder for each page.
 
-A block `sh` is a script; in `console` a line `$ COMMAND` is followed by what it writes to a terminal, and a
-line `...` stands for any lines; `python` is run as it is or, with `>>>`, as a doctest; `pycon` is one that needs
-nothing before it. Files that a page links to are there. A comment directly above a block may say
+A block `sh` is a script; in `console` a line `$ COMMAND` is followed by what it writes to a terminal, and `...`
+is any lines; `python` is run as it is or, with `>>>`, as a doctest; `pycon` is one that needs nothing before it.
+Files that a page links to are there. A comment directly above a block may say
 
     <!-- the test runs this with: --time-limit 8h -> --time-limit 3; 64 -> 2 -->
     <!-- before it the test runs: sono start 3_1 -o mystery.txt -->
@@ -184,7 +184,6 @@ class Reader:
                 ["bash", "-e", "-c", script],
                 cwd=self.folder,
                 env=os.environ | more,
-                start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 stdout=theirs,
                 stderr=errors,
