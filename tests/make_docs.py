@@ -22,7 +22,7 @@ from sono.tightening.settings import default_settings
 DOCS = Path(__file__).parent.parent / "docs"
 
 BEFORE = {
-    "convert": "sono tighten 8_18 -n 240 -q -o 8_18.n960.txt",
+    "convert": "sono tighten 8_18 -n 240 -o 8_18.n960.txt",
     "export": "sono start L6a1 --known -o tight.txt",
     "identify": "sono start 8_18 -o mystery.txt",
     "measure": "sono tighten 3_1 -n 60 -o trefoil.n480.txt",
@@ -33,9 +33,11 @@ BEFORE = {
 """What makes the files that examples of a command take."""
 
 CHANGED = {
-    "compare": "knots/atlas/knots.tsv -> knots.tsv",
-    "report": "report atlas -> report 3_1",
-    "search": "--time-limit 60 -> --trials 4; --trials 64 -> --trials 2",
+    "sono": "120,240,480 -> 60,120; n480 -> n120",
+    "report": "report atlas -> report 3_1; 3_1 4_1 5_1 -n 120,240 -> 3_1 4_1 -n 120",
+    "plot": "240,480,960,1920 -> 60,120,240",
+    "search": "8_4 --time-limit 60 -> 3_1 --trials 1; 6_1 9_1 --trials 64 -> 4_1 --trials 1",
+    "tighten": "-n 960 -> -n 240; 120,240,480 -> 60,120",
     "view": "n480 -> n120",
 }
 """What of the examples the tests change, so that they are done in no time."""

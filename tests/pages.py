@@ -1,7 +1,7 @@
 """Runs what pages of the documentation say, block after block, in one folder for each page.
 
-A block `sh` is a script; in `console` a line `$ COMMAND` is followed by what it writes to a terminal, and `...`
-is any lines; `python` is run as it is or, with `>>>`, as a doctest; `pycon` is one that needs nothing before it.
+A block `sh` is a script; in `console` a line `$ COMMAND` is followed by what it writes to a terminal, with
+`...` for any lines; `python` is run as it is or, with `>>>`, as a doctest; `pycon` needs nothing before it.
 Files that a page links to are there. A comment directly above a block may say
 
     <!-- the test runs this with: --time-limit 8h -> --time-limit 3; 64 -> 2 -->

@@ -20,7 +20,8 @@ a is a quotient of differences of order dl^3 between terms of order dl, which le
 dl = 1e-7. And 4 is the limit of a, not its average: a(1.5) = 7.30, and a grows without bound as dl -> 2,
 where R_c vanishes.
 
->>> float(round(weight(1.0), 3))
+>>> import sono
+>>> float(round(sono.model.weight(1.0), 3))
 4.94
 
 Source: J. Baranska, P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots", section "The problem

@@ -53,6 +53,9 @@ def command(
     --trials, and what is shorter is taken in; so is a rope from a FILE called NAME.txt or NAME.more.txt. The
     ropes in the package are those with which `sono tighten NAME` begins. Only one process at a time may
     update a folder.
+
+    \b
+      sono atlas 8_18 3_1#3_1
     """
     # Imported here, since numpy would make --help wait.
     from sono.jobs.atlas import Atlas

@@ -61,7 +61,7 @@ def command(sources: tuple[str, ...], published_file: str | None, all_: bool, sh
     radius; the columns printed and per tell what the source has.
 
     \b
-      sono compare knots/atlas/knots.tsv
+      sono tighten 3_1 4_1 -n 240 | sono compare -
     """
     from sono.formats import FormatError
     from sono.tables import published

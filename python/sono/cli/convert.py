@@ -30,6 +30,10 @@ def command(
 
     The suffix of OUT tells the format; .gz after it packs. Comments and every digit are kept where the format
     has room for them. Of a file that holds several curves, OUT holds all if it is a folder/ or .xyz.
+
+    \b
+      sono convert 8_18.n960.txt 8_18.obj
+      sono convert 3_1 trefoil.json.gz
     """
     from sono.jobs.sources import curves  # here, since numpy would make --help wait
 

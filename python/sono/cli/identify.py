@@ -37,6 +37,11 @@ def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: op
     Further columns are may_be, components, determinant, signature, linking (numbers), alexander and homfly,
     which is in Regina's alpha (x) and z (y). The crossings are those of the curve's simplified diagram. Its
     PD code gives for each crossing the four edges, counter-clockwise from the incoming lower one.
+
+    \b
+      sono identify mystery.txt
+      sono identify mystery.txt --columns file,knot,known,determinant,homfly
+      sono identify mystery.txt --pd > mystery.pd
     """
     with nullcontext() if pd else shown.table() as table:
 

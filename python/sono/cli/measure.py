@@ -46,6 +46,10 @@ def command(
     the eigenvalues of its tensor, the diameter is the largest distance of two vertices. Total curvature and
     torsion are sums of angles in radians, the maximal curvature is 1/MinRad, contacts are pairs of vertices
     2 R_s apart. Any of them can be asked for alone: --columns knot,writhe,acn
+
+    \b
+      sono measure --residual trefoil.n480.txt
+      sono measure trefoil.n480.txt --columns knot,writhe,acn
     """
     wanted = [*(tables.SHAPE if everything else ()), *(["residual"] if residual else ())]
     shown = replace(shown, columns=list(dict.fromkeys([*shown.columns, *wanted])))

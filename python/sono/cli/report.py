@@ -60,7 +60,7 @@ def command(
 
     \b
       sono report atlas -o site/
-      sono tighten 3_1 4_1 5_1 -n 120,240 -o tight/ && sono report tight/ -o site/
+      sono tighten 3_1 4_1 5_1 -n 120,240 -o tight/ && sono report tight/ -o pages/
     """
     from sono.figures.report.site import INDEX, finish
     from sono.formats import FormatError

@@ -68,6 +68,10 @@ def command(
     Each trial tightens another starting conformation on few beads; the most promising shapes are refined and
     polished. The rows are the shortest minima found: hits tells in how many trials. The best rope so far is
     always in NAME.tight.txt.
+
+    \b
+      sono search 8_4 --time-limit 60
+      sono search 6_1 9_1 --trials 64 --jobs 2 -o found/
     """
     # Imported here, since numpy would make --help wait.
     from sono.jobs.search import SearchJob

@@ -52,6 +52,11 @@ def command(
     sono[knotinfo]), a link (L5a1, 5^2_1, Hopf), a torus knot or link ("T(2,5)", negative for the mirror
     image), a pretzel ("P(-2,3,7)"), a two-bridge link (5/2, "C(3,2)"), chain3, or a sum (3_1#m3_1); --list
     has those that are built in.
+
+    \b
+      sono start 3_1 > trefoil.txt
+      sono start --braid "1 -2 1 -2" -o figure8.txt
+      sono start 8_18 --known | sono measure -
     """
     # Imported here, since numpy would make --help wait.
     from sono import formats, starts

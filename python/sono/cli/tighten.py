@@ -133,6 +133,11 @@ def command(
     The rope has radius 1. L_p, L_c and L_a are what the written vertices measure. Where a run is stopped by
     Ctrl-C, SIGTERM or --time-limit, its best state is written to NAME.nN.best.txt, unless it is on a cluster.
     Standard input has the NAME stdin, or else stdin-2 and so on.
+
+    \b
+      sono tighten 8_18 -n 960
+      sono tighten trefoil.txt -n 120,240,480
+      sono start 3_1 | sono tighten - -n 240 --contacts forces.tsv
     """
     from sono.jobs.away import SentJob  # here, since numpy would make --help wait
 
