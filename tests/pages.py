@@ -162,10 +162,10 @@ class Reader:
         for part in re.split(r"(?m)^\$ ", text)[1:]:
             command, want = re.fullmatch(r"((?:[^\n]*\\\n)*[^\n]*)\n?(.*)", part, re.DOTALL).groups()  # type: ignore[union-attr]
             _, output, errors = self._run(command)
-            told = "".join(line for line in want.splitlines(True) if line.startswith("sono: "))
+            told = [line for line in want.splitlines() if line.startswith("sono: ")]
             shown = "".join(line for line in want.splitlines(True) if not line.startswith("sono: "))
             assert same(shown, output), f"$ {command}\n{output}"
-            assert same(told, errors), f"$ {command}\n{errors}"
+            assert same("\n".join(sorted(told)), "\n".join(sorted(errors.splitlines()))), f"$ {command}\n{errors}"
 
     def _examples(self, text: str, where: str, names: dict[str, Any]) -> None:
         test = doctest.DocTestParser().get_doctest(text, names, where, where, 0)
