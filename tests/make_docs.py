@@ -43,6 +43,31 @@ CHANGED = {
 """What of the examples the tests change, so that they are done in no time."""
 
 
+CONTENTS = {
+    "brackets": "rows or lists in brackets, as Python and Mathematica print them",
+    "codes": "[PD, DT or Gauss codes](names.md#codes), one a line, each a curve",
+    "coords": "what KnotPlot's command coords prints",
+    "csv": "a header and rows, also with semicolons, and with a column that tells components apart",
+    "fseries": "Fourier series in Fremlin's files",
+    "gro": "GRO of GROMACS, a frame after the other",
+    "ideal": "Fourier series of ideal knots in Gilbert's XML",
+    "json": "a curve with all that is known of it: [its schema](schemas.md#curve); also plain lists",
+    "knotplot": "KnotPlot's binary files",
+    "lammps": "LAMMPS data, chains along their bonds",
+    "lammpstrj": "LAMMPS dump, a frame after the other",
+    "mmcif": "mmCIF, read as PDB is; needs the extra molecules",
+    "npy": "NumPy: (n, 3), or (k, n, 3) for k components",
+    "npz": "NumPy: an archive of arrays, each a component",
+    "obj": "Wavefront OBJ: vertices, and lines that join them",
+    "pdb": "PDB: CA or P atoms, or beads along their bonds, chain by chain; written with the closing bond",
+    "pkf": "PKF of libbiarc: nodes and tangents",
+    "text": "rows of x y z, also with an index or element column, or a header that names the columns",
+    "vect": "Geomview VECT, ASCII",
+    "xyz": "molecular XYZ, also extended, a frame after the other",
+}
+"""What is in a file of each format."""
+
+
 def pages() -> Iterator[tuple[str, str]]:
     """Give the path in docs/ of each generated page, and the page."""
     group = click.Context(main, info_name="sono", **main.context_settings)
@@ -151,15 +176,15 @@ def _properties(schema: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
 
 def formats_table() -> str:
     """Write which formats are read and written, and by which suffixes."""
-    names = sorted({*formats.READERS, *formats.BINARY, *formats.WRITERS} - {"commas"})
-    return table(("format", "suffix", "read", "written"), map(_format, names))
+    names = sorted({*formats.READERS, *formats.BINARY, *formats.WRITERS})
+    return table(("format", "suffix", "read", "written", "what is in it"), map(_format, names))
 
 
 def _format(name: str) -> tuple[str, ...]:
     suffixes = [suffix or "none" for suffix, key in formats.SUFFIXES.items() if key == name]
     read = name in formats.READERS or name in formats.BINARY or name in formats.SUFFIXES.values()
     shown = ", ".join(code(suffix) if suffix != "none" else suffix for suffix in suffixes) or "any"
-    return code(name), shown, "yes" if read else "", "yes" if name in formats.WRITERS else ""
+    return code(name), shown, "yes" if read else "", "yes" if name in formats.WRITERS else "", CONTENTS[name]
 
 
 def settings_table() -> str:

@@ -27,11 +27,9 @@ DOCS = Path(__file__).parent.parent / "docs"
 
 REASONS = {
     "it changes the shell",
-    "it clones the repository",
     "it installs packages",
-    "it needs a browser and a user",
     "it needs a cluster",
-    "it takes hours",
+    "it takes minutes",
 }
 """Why a block may stay untried."""
 
