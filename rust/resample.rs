@@ -3,7 +3,7 @@
 //! **The type stays what it is**, P -> K_P -> chords, though beads are put to new places. Let R_c be the
 //! thickness of K_P.
 //!
-//! 1. *P -> K_P.* Where R_c is measured, by the theorem of `docs/theorem.md`. Else the curve goes through
+//! 1. *P -> K_P.* Where R_c is measured, by the theorem of `docs/explanation/theorem.md`. Else the curve goes through
 //!    [`Inscribed::clear_of_strands`], which has its own proof.
 //! 2. *K_P -> chords above which no arc is longer than 1.5 R_c.* Let R_c = 1, and T be the tangent at a place
 //!    a of an arc of the length l <= 1.5 above a chord w. All tangents of the arc are within l < pi/2 of T, so

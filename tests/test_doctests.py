@@ -3,7 +3,6 @@
 import doctest
 import pkgutil
 from importlib import import_module
-from pathlib import Path
 
 import pytest
 
@@ -16,13 +15,6 @@ MODULES = ["sono", *(module.name for module in pkgutil.walk_packages(sono.__path
 @pytest.mark.parametrize("name", [name for name in MODULES if name != "sono._core"])
 def test_examples(name: str) -> None:
     assert doctest.testmod(import_module(name)).failed == 0
-
-
-@pytest.mark.parametrize(
-    "page", sorted(Path(__file__).parent.parent.glob("docs/*.md")), ids=lambda page: str(page.name)
-)
-def test_pages(page: Path) -> None:
-    assert doctest.testfile(str(page), module_relative=False, encoding="utf-8").failed == 0
 
 
 @pytest.mark.parametrize("name", sorted({*sono.__all__} - {"__version__"}))

@@ -1,4 +1,4 @@
-"""The theorem of docs/theorem.md, seen on K_P itself: it is as thick as R_c, sampled wherever."""
+"""The theorem of docs/explanation/theorem.md, seen on K_P itself: it is as thick as R_c, sampled wherever."""
 
 import re
 from collections.abc import Callable
@@ -95,7 +95,7 @@ def test_whatever_the_edges(seed: int, n: int, uneven: float, waves: float, narr
 
 
 def test_lines_that_are_pointed_to_are_there() -> None:
-    page = Path(__file__).parent.parent / "docs" / "theorem.md"
+    page = Path(__file__).parent.parent / "docs" / "explanation" / "theorem.md"
     if not page.is_file():
         pytest.skip("needs the source tree")
     lines = set(re.findall(r"^- \(([TDPC]\d+)\)", page.read_text(encoding="utf-8"), re.MULTILINE))

@@ -86,7 +86,9 @@ def write(path: str | os.PathLike[str], curve: Rope, comments: str | Sequence[st
 
 
 def names() -> list[str]:
-    """Return the names that are built in; others are torus types "T(p,q)", codes and more: docs/names.md.
+    """Return the names that are built in; others are torus types "T(p,q)", codes and more.
+
+    docs/reference/names.md has all kinds.
 
     >>> names()[:3], "Hopf" in names()
     (['3_1', '4_1', '5_1'], True)
@@ -98,9 +100,10 @@ def start(name: str, variant: int = 0, *, known: bool = False) -> Curve:
     """Return a loose conformation of the knot of this name, in units of about one rope radius.
 
     A name may be a code, such as "pd:[(1,5,2,4),(3,1,4,6),(5,3,6,2)]", "dt:4 6 2" or "gauss:1 -2 3 -1 2 -3";
-    docs/names.md has all kinds. Each `variant` is another conformation of the same type, drawn from a planar
-    diagram if it is negative. If `known`, it is the rope that the atlas has of the knot or link instead,
-    tight at R_s = 1 on edges of about 0.2. Raises `ValueError`, with the nearest known name, for others.
+    docs/reference/names.md has all kinds. Each `variant` is another conformation of the same type, drawn from
+    a planar diagram if it is negative. If `known`, it is the rope that the atlas has of the knot or link
+    instead, tight at R_s = 1 on edges of about 0.2. Raises `ValueError`, with the nearest known name, for
+    others.
 
     >>> start("3_1"), len(start("P(-2,3,7)")), len(start("gauss:1 -2 | 2 -1")), start("3_1", known=True)
     (Curve(69 vertices), 1, 2, Curve(164 vertices))

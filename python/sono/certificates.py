@@ -3,7 +3,8 @@
 The core computes in intervals that are rounded outward; here its doubles become decimals of DIGITS digits,
 rounded the same way. The core's last step outward is half a last bit of a double at least, 5e-17 of it, so
 that decimals which move by 1e-19 cannot undo what was proven: `l_c` is at least `length`/`r_c` as decimals,
-and `r_c`^2 at most `r`^2 - `s`^2/4. docs/theorem.md has the theorem, docs/certificates.md the document.
+and `r_c`^2 at most `r`^2 - `s`^2/4. docs/explanation/theorem.md has the theorem,
+docs/reference/certificates.md the document.
 """
 
 import hashlib
@@ -89,7 +90,7 @@ def certify(vertices: Rope) -> Certificate:
 
     Raises `CurveError` where nothing is proven, as its edges are too long for its bends or its distances,
     `ValueError` for a name of which the atlas has no rope. The type is that of the curve: `identify` names
-    it. Source: docs/theorem.md.
+    it. Source: docs/explanation/theorem.md.
 
     >>> import sono
     >>> sono.certify(sono.tighten("3_1", 240)).rounded(6)

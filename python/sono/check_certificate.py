@@ -3,8 +3,8 @@
     python check_certificate.py CERTIFICATE FILE
 
 CERTIFICATE is JSON as `sono certify` writes it, FILE the rows x y z that it is of. All is proven again from
-the vertices, by docs/theorem.md: (T1) to (T3) and (C1) to (C9) are lines of it. The exit code is 0 if the
-certificate holds, 1 if it is refused: the message says which inequality fails, and where.
+the vertices, by docs/explanation/theorem.md: (T1) to (T3) and (C1) to (C9) are lines of it. The exit code is
+0 if the certificate holds, 1 if it is refused: the message says which inequality fails, and where.
 
 This file needs nothing but Python and shares no code with the program that makes certificates. It has no
 floating point: a coordinate is a whole number of units, 2^-k each, with k so large that all are exact and the

@@ -3,8 +3,8 @@
     python check_thickness.py THICKNESS FILE
 
 THICKNESS is JSON as `sono certify --sharp` writes it, FILE the rows x y z that it is of. All is proven again
-from the vertices, by docs/theorem.md: (T1) to (T3) as check_certificate.py does, (T5) and (T6) by (C11). The
-exit code is 0 if the bound holds, 1 if it is refused.
+from the vertices, by docs/explanation/theorem.md: (T1) to (T3) as check_certificate.py does, (T5) and (T6)
+by (C11). The exit code is 0 if the bound holds, 1 if it is refused.
 
 It shares whole numbers and readers with check_certificate.py, beside which it has to be, and nothing with
 the program that makes bounds.

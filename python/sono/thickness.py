@@ -1,7 +1,8 @@
 """A sharper bound: the length of the inscribed curve over its own thickness, which is more than R_c.
 
 The thickness is guessed from points of the curve, a little low, and proven in whole numbers by
-`check_thickness`, which takes nothing from here but the guess. docs/theorem.md has the theorem, (T5) to (T7).
+`check_thickness`, which takes nothing from here but the guess. docs/explanation/theorem.md has the
+theorem, (T5) to (T7).
 """
 
 import os
@@ -65,7 +66,7 @@ def sharpen(vertices: Rope) -> Thickness:
 
     Of what edges add to L_c, a fourth is left as a rule. It takes a second for hundreds of vertices. A name
     stands for the atlas's rope of the knot. Raises `CurveError` as `certify` does, `ValueError` where no
-    bound is proven that is sharper. Source: docs/theorem.md.
+    bound is proven that is sharper. Source: docs/explanation/theorem.md.
 
     >>> import sono
     >>> 25.1327 < sono.sharpen("Hopf").l_k < 25.134 < sono.certify("Hopf").l_c

@@ -1,7 +1,7 @@
 //! The certified bound: L_c = Length(K_P)/R_c, rounded up, for unequal edges and several components.
 //!
-//! Names in brackets are those of `docs/theorem.md`: s_i the edges, S_c the longest of component c, S the
-//! longest of all, t_i half the shorter edge at v_i (D1), theta_i the turning angle there (D2), and
+//! Names in brackets are those of `docs/explanation/theorem.md`: s_i the edges, S_c the longest of component c,
+//! S the longest of all, t_i half the shorter edge at v_i (D1), theta_i the turning angle there (D2), and
 //! Rad_i = t_i/tan(theta_i/2) (D3), of which M_c is the least. R is the largest number with
 //!
 //! - (T1) R^2 <= M_c^2 + S_c^2/4 for each component: both from below;

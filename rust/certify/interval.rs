@@ -1,4 +1,4 @@
-//! Numbers that are known to lie between two others: (C10) of `docs/theorem.md`.
+//! Numbers that are known to lie between two others: (C10) of `docs/explanation/theorem.md`.
 //!
 //! The compiler moves arithmetic across a switch of the processor's rounding mode, so every operation
 //! rounds to nearest and then steps outward by one representable number. What is rounded to nearest

@@ -1,6 +1,6 @@
 """The record beside a rope's file: what proves, and what else was looked at, that its type is the input's.
 
-docs/records.md says what it holds and what that is worth; `data/record.schema.json` is its schema.
+docs/reference/records.md says what it holds and what that is worth; `data/record.schema.json` is its schema.
 """
 
 import hashlib
