@@ -74,15 +74,15 @@ the finest edges that the atlas has it on.
 Each of these ropes, and any other of the atlas, is had by its name:
 
 ```sh
-sono start 8_18 --known -o 8_18.txt             # the vertices
-sono tighten 8_18 -n 480                        # polished on as many vertices as you like
-sono view 8_18                                  # in the round, in a browser
+sono start 8_18 --known -o 8_18.txt     # its vertices
+sono tighten 8_18 -n 480                # the same rope on 480 of them, polished
+sono view 8_18                          # 8_18.html: the rope in the round
 ```
 """
 
-CARD = """<figure style="display: inline-block; width: 10.5rem; margin: 0.5rem; vertical-align: top">
+CARD = """<figure style="display: inline-block; width: {width}px; margin: 8px 4px; vertical-align: top">
 <img src="{picture}" alt="{name}" width="{width}" loading="lazy">
-<figcaption><b>{name}</b><br>L_a {l_a}, L_c {l_c}<br>{what}<br><code>{command}</code></figcaption>
+<figcaption style="font-style: normal"><b>{name}</b><br>L_a {l_a}, L_c {l_c}<br>{what}<br><code>{command}</code></figcaption>
 </figure>
 """
 
