@@ -65,10 +65,10 @@ SHOWN = {
 HEAD = """# Gallery
 
 Ropes of the atlas: the shortest that were found. It has all {knots:,} prime knots to 12 crossings, all
-{links} prime links to 9, {sums} sums, and {torus} torus knots and links. For {la:,} of the knots L_a is at
-most the shortest ropelength that is published, and for {lc:,} the certified L_c is. Other pages say
-[what these letters mean](explanation/rope.md), [what is proven](explanation/bounds.md), and
-[what "tight" does not say](explanation/tight.md). L_a is rounded; L_c is the certified one, rounded up, on
+{links} prime links to 9, {composites} sums, and {torus} torus knots and links. For {la:,} of the knots L_a is
+at most the shortest ropelength that is published, and for {lc:,} the certified L_c is; of the {few} to ten
+crossings, for {few_la} and {few_lc}. Other pages say [what these letters mean](explanation/rope.md),
+[what is proven](explanation/bounds.md), and [what "tight" does not say](explanation/tight.md). L_a is rounded; L_c is the certified one, rounded up, on
 the finest edges that the atlas has it on.
 
 Each of these ropes, and any other of the atlas, is had by its name:
@@ -80,9 +80,11 @@ sono view 8_18                          # 8_18.html: the rope in the round
 ```
 """
 
-CARD = """<figure style="display: inline-block; width: {width}px; margin: 8px 4px; vertical-align: top">
+CARD = """<figure style="display: inline-block; width: {width}px; margin: 8px; vertical-align: top">
 <img src="{picture}" alt="{name}" width="{width}" loading="lazy">
-<figcaption style="font-style: normal"><b>{name}</b><br>L_a {l_a}, L_c {l_c}<br>{what}<br><code>{command}</code></figcaption>
+<figcaption style="font-style: normal; font-size: 85%">
+<b>{name}</b><br>L_a {l_a}<br>L_c {l_c}<br>{what}<br><code>{command}</code>
+</figcaption>
 </figure>
 """
 
@@ -95,16 +97,19 @@ def page() -> str:
     rows = {row["knot"]: row for rows in tables.values() for row in rows.values()} | {
         "Hopf": tables["links"]["L2a1"]
     }
-    published = [row for row in tables["knots"].values() if row["published"] != "-"]
+    knots = list(tables["knots"].values())
+    few = [row for row in knots if re.match(r"(\d|10)_", row["knot"])]
     head = HEAD.format(
-        knots=len(tables["knots"]),
-        links=len(tables["links"]),
-        sums=len(tables["composites"]),
-        torus=len(tables["torus"]),
-        la=sum(float(row["l_a_difference"]) <= 0 for row in published),
-        lc=sum(float(row["l_c_difference"]) <= 0 for row in published),
+        **{name: len(table) for name, table in tables.items()},
+        **{"la": shorter(knots, "l_a"), "lc": shorter(knots, "l_c")},
+        **{"few": len(few), "few_la": shorter(few, "l_a"), "few_lc": shorter(few, "l_c")},
     )
     return "\n".join([head, *sections(rows)])
+
+
+def shorter(rows: list[Row], key: str) -> int:
+    """Count the rows whose length is at most what is published."""
+    return sum(row["published"] != "-" and float(row[f"{key}_difference"]) <= 0 for row in rows)
 
 
 def sections(rows: dict[str, Row]) -> Iterator[str]:

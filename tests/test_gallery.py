@@ -31,7 +31,7 @@ def test_each_rope_has_a_small_picture_and_no_other_is_there() -> None:
 @pytest.mark.parametrize("name", ["3_1", "Hopf"])
 def test_the_figures_are_those_of_the_rope(name: str) -> None:
     measures = sono.measure(sono.start(name, known=True))
-    found = re.search(rf"<b>{name}</b><br>L_a ([\d.]+), L_c ([\d.]+)<", make_gallery.page())
+    found = re.search(rf"<b>{name}</b><br>L_a ([\d.]+)<br>L_c ([\d.]+)<", make_gallery.page())
     assert found
     assert measures.l_a
     assert measures.l_c
