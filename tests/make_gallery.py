@@ -68,8 +68,8 @@ Ropes of the atlas: the shortest that were found. It has all {knots:,} prime kno
 {links} prime links to 9, {composites} sums, and {torus} torus knots and links. For {la:,} of the knots L_a is
 at most the shortest ropelength that is published, and for {lc:,} the certified L_c is; of the {few} to ten
 crossings, for {few_la} and {few_lc}. Other pages say [what these letters mean](explanation/rope.md),
-[what is proven](explanation/bounds.md), and [what "tight" does not say](explanation/tight.md). L_a is rounded; L_c is the certified one, rounded up, on
-the finest edges that the atlas has it on.
+[what is proven](explanation/bounds.md), and [what "tight" does not say](explanation/tight.md). L_a is
+rounded; L_c is the certified one, rounded up, on the finest edges that the atlas has it on.
 
 Each of these ropes, and any other of the atlas, is had by its name:
 
