@@ -13,7 +13,7 @@ from sono import formats, starts, tables
 
 @pytest.fixture
 def curves(folder: Path) -> Path:
-    for file, name in {"mirror": "m3_1", "sum": "3_1#4_1", "new": "T(2,15)", "unknot": "0_1"}.items():
+    for file, name in {"mirror": "m3_1", "sum": "3_1#4_1", "new": "P(3,5,7)", "unknot": "0_1"}.items():
         formats.write(folder / f"{file}.txt", starts.start(name))
     return folder
 

@@ -87,7 +87,7 @@ def test_parts_that_are_apart() -> None:
     assert identify([*trefoil, *over]).name == "3_1+4_1"
 
 
-@pytest.mark.parametrize("name", ["T(2,15)", "T(3,7)", "T(2,10)", "T(2,15)#T(4,5)"])
+@pytest.mark.parametrize("name", ["P(3,5,7)", "C(5,4,5)", "P(2,4,6)", "P(3,5,7)#P(-3,5,7)"])
 def test_what_the_table_has_not(name: str) -> None:
     found = identify(start(name))
     assert (found.names, found.name, found.known) == ((), None, "not in the table")
@@ -106,7 +106,12 @@ def test_invariants_do_not_name_what_may_be_larger_than_the_table(wanted: str) -
 
 @pytest.mark.parametrize(
     ("name", "expected"),
-    [("9_1#T(2,15)", "9_1#?"), ("Hopf#T(4,5)", "L2a1{1}#?"), ("T(4,5)#m3_1#T(2,15)", "m3_1#?#?")],
+    [
+        ("9_1#P(3,5,7)", "9_1#?"),
+        ("Hopf#P(3,5,7)", "L2a1{1}#?"),
+        ("P(3,5,7)#m3_1#P(-3,5,7)", "m3_1#?#?"),
+        ("P(3,5,7)#mT(2,15)", "mT(2,15)#?"),
+    ],
 )
 def test_sums_name_the_parts_that_have_names(name: str, expected: str) -> None:
     found = identify(start(name))
@@ -117,9 +122,9 @@ def test_parts_that_are_apart_name_those_that_have_names() -> None:
     larger, far = start(LARGER["12a_786"]), [component + 100 for component in start("m5_2")]
     found = identify([*larger, *far])
     assert (found.name, found.known, found.may_be) == ("m5_2+?", "undecided", ("m5_2+12a_786",))
-    found = identify([*start("T(4,5)"), *far, far[0] + 100, np.eye(3) - 100])
+    found = identify([*start("P(3,5,7)"), *far, far[0] + 100, np.eye(3) - 100])
     assert (found.name, found.known, found.may_be) == ("0_1+m5_2+m5_2+?", "not in the table", ())
-    assert identify([*start("T(4,5)"), start("T(2,15)")[0] + 100]).name is None
+    assert identify([*start("P(3,5,7)"), start("P(-3,5,7)")[0] + 100]).name is None
 
 
 def test_links_show_the_smallest_diagram_that_was_met() -> None:

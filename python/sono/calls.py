@@ -159,10 +159,10 @@ def identify(vertices: Rope) -> Identity:
     """Name the knot or link that a curve is, of any scale; see `Identity`.
 
     Raises `CurveError` for a curve that is not embedded, `TooEntangledError`, a `ValueError`, where over 1000
-    crossings are left in its diagram.
+    crossings are left in its diagram, unless it is a torus link that is seen to be a closed braid.
 
-    >>> identify("T(3,4)").name, identify("4_1#m3_1").name, identify("T(2,15)").name
-    ('8_19', 'm3_1#4_1', None)
+    >>> identify("T(3,4)").name, identify("4_1#m3_1").name, identify("T(30,60)").name
+    ('8_19', 'm3_1#4_1', 'T(30,60)')
     """
     return naming.identify(_components(vertices))
 
@@ -171,7 +171,7 @@ def verify(one: Rope, other: Rope) -> Verdict:
     """Tell whether two curves, of any scales, are the same knot or link; see `Verdict`.
 
     Raises `CurveError` for a curve that is not embedded, `TooEntangledError`, a `ValueError`, where over 1000
-    crossings are left in a diagram.
+    crossings are left in a diagram, as for `identify`.
 
     >>> verify("T(3,4)", start("8_19", 3)).verdict, verify("Hopf", "L2a1{0}").verdict
     ('same', 'mirror images')

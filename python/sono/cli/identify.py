@@ -26,13 +26,15 @@ COLUMNS = ("file", "knot", "known", "crossings")
 def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: options.Shown) -> None:
     """Name the knot or link of curves: a row for each FILE, - for standard input, or each curve in it.
 
-    Names are those of KnotInfo for prime knots to 13 crossings and of LinkInfo for prime links to 9; m is the
-    mirror image, # a connected sum, + stands between parts that are not linked, ? is a part that has no name.
+    Names are those of KnotInfo for prime knots to 13 crossings and of LinkInfo for prime links to 9, and
+    T(p,q) for larger torus knots, and for links whose components run in parallel; m is the mirror image, # a
+    connected sum, + stands between parts that are not linked, ? is a part that has no name.
 
-    A name is proven where moves make the table's diagram of the curve's. Where only invariants tell, all
-    knots that share them are named, if a diagram has so few crossings that the table has its knot. What is
-    not in the table has no name. What is undecided has none either: it has too many crossings for HOMFLY,
-    or shares invariants with knots in the table, which may_be tells, but may be a larger knot.
+    A name is proven where moves make the table's diagram of the curve's, or where this is a closed braid and
+    its powers show it to be that of a torus knot. Where only invariants tell, all knots that share them are
+    named, if a diagram has so few crossings that the table has its knot. What is not in the table has no
+    other name. What is undecided has none: it has too many crossings for HOMFLY, or shares invariants with
+    knots in the table, which may_be tells, but may be a larger knot.
 
     Further columns are may_be, components, determinant, signature, linking (numbers), alexander and homfly,
     which is in Regina's alpha (x) and z (y). The crossings are those of the curve's simplified diagram. Its

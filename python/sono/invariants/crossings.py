@@ -50,18 +50,18 @@ def diagram(curve: Components) -> Crossings:
     return found
 
 
-def crossings(curve: Components, direction: Floats | None = None) -> Crossings:
+def crossings(curve: Components, direction: Floats | None = None, most: int = sys.maxsize) -> Crossings:
     """Return the crossings seen along the z axis, or from where `direction` (3,) points to.
 
-    No two vertices may be seen in one place.
+    No two vertices may be seen in one place. Of more than `most` crossings, only some are found.
     """
     if direction is None:
-        return _seen(curve)
+        return _seen(curve, most)
     up = direction / np.linalg.norm(direction)
     across = np.cross(up, [1.0, 2.0, 3.0])
     across /= np.linalg.norm(across)
     turn = np.column_stack([across, np.cross(up, across), up])
-    return _seen([component @ turn for component in curve])
+    return _seen([component @ turn for component in curve], most)
 
 
 def simplify(curve: Components) -> Components:
@@ -83,6 +83,12 @@ def linking_matrix(found: Crossings) -> Ints:
     np.fill_diagonal(twice, 0)
     assert (twice % 2 == 0).all(), "two closed curves cross an even number of times"
     return twice // 2
+
+
+def linking_numbers(found: Crossings) -> tuple[int, ...]:
+    """Return the linking numbers of all pairs of components."""
+    matrix = linking_matrix(found)
+    return tuple(matrix[np.triu_indices(len(matrix), 1)].tolist())
 
 
 def planar_diagram(found: Crossings) -> list[tuple[int, int, int, int]]:
@@ -109,7 +115,7 @@ def entered(found: Crossings, places: Floats) -> Ints:
     return np.where(entering < first, last - 1, entering)
 
 
-def _seen(curve: Components, most: int = sys.maxsize) -> Crossings:
+def _seen(curve: Components, most: int) -> Crossings:
     over, under, right = _core.crossings(curve, most)
     return Crossings(over, under, np.where(right, 1, -1), _bounds(curve))
 

@@ -8,10 +8,8 @@ import cmath
 import math
 from typing import TypeAlias
 
-import numpy as np
-
 from sono.curve import Components
-from sono.invariants.crossings import Crossings, diagram, linking_matrix, planar_diagram
+from sono.invariants.crossings import Crossings, diagram, linking_numbers, planar_diagram
 from sono.invariants.diagrams import as_crossings, gauss_code, homfly_polynomial, shortened, written
 from sono.invariants.polynomials import alexander_modulo
 from sono.invariants.signatures import signature
@@ -36,9 +34,8 @@ def fingerprint(curve: Components) -> Fingerprint:
 
 def fingerprint_of(found: Crossings) -> Fingerprint:
     """Return the fingerprint of a curve by its projection."""
-    linking = linking_matrix(found)[np.triu_indices(len(found.bounds) - 1, 1)].tolist()
     signatures = tuple(signature(found, cmath.exp(2j * math.pi / k)) for k in ORDERS)
-    return tuple(linking), signatures, tuple(alexander_modulo(found, k) for k in ORDERS)
+    return linking_numbers(found), signatures, tuple(alexander_modulo(found, k) for k in ORDERS)
 
 
 def homfly(curve: Components) -> str:

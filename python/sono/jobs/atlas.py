@@ -20,8 +20,7 @@ from sono import _core, starts
 from sono.curve import Components, forces, measure
 from sono.formats import FormatError
 from sono.formats.ropefile import TIGHT, Searched
-from sono.invariants import TooEntangledError, fingerprint
-from sono.invariants.crossings import crossings, linking_matrix
+from sono.invariants import fingerprint
 from sono.jobs.curvefiles import rope_in
 from sono.jobs.family import Family
 from sono.naming import identify
@@ -41,9 +40,6 @@ FINEST = 6000
 BALANCED = 1e-4
 """Residual up to which a rope that its file calls tight is taken as it is; forces fitted to ten thousand
 vertices seldom leave less."""
-
-VIEW = np.array([0.3, 0.5, 0.81])
-"""Where links are looked at from, in which symmetric ones have nothing in line."""
 
 SHORTER = 1e-7
 """A rope is shorter than another if its L_a is by so much, relatively."""
@@ -125,30 +121,18 @@ class Atlas:
 def confirmed_type(knot: str, curve: Components, file: str) -> str:
     """Return how it is known that a curve is the knot of this name: "proven", "invariants" or less.
 
-    Torus types are told by their "fingerprint", see `invariants`, or, where links have too many crossings for
-    that, by "linking" numbers. Raises `ValueError` if the curve is another knot.
+    A torus type whose diagram is no closed braid is told by its "fingerprint", see `invariants`. Raises
+    `ValueError` if the curve is another knot, and `TooEntangledError`.
     """
-    family = place(knot).family
-    if family == "torus":
-        right, by = _like_torus(curve, starts.start(knot))
+    found, family = identify(curve), place(knot).family
+    if family == "torus" and not found.names:
+        right, by = fingerprint(curve) == fingerprint(starts.start(knot)), "fingerprint"
     else:
-        found = identify(curve)
         names = (knot,) if family == "knots" else identify(starts.start(knot)).names
-        right, by = found.names == names, found.known
+        right, by = found.names == names, str(found.known)
     if not right:
         raise ValueError(f"{file}: is of another knot type than {knot}; remove it or name it otherwise")
     return by
-
-
-def _like_torus(curve: Components, start: Components) -> tuple[bool, str]:
-    """Tell whether a curve has the invariants of a torus type, and which. Raises `TooEntangledError`."""
-    try:
-        return fingerprint(curve) == fingerprint(start), "fingerprint"
-    except TooEntangledError:
-        if len(start) == 1 or len(start) != len(curve):
-            raise
-        one, other = (linking_matrix(crossings(link, VIEW)) for link in (curve, start))
-        return bool((one == other).all()), "linking"
 
 
 def _fit(file: str, watch: Watch) -> tuple[Components, Searched | None]:

@@ -11,21 +11,18 @@ from dataclasses import dataclass
 from itertools import islice, product
 from typing import Literal
 
-import numpy as np
-
 from sono.curve import Components
-from sono.invariants.crossings import diagram, linking_matrix, planar_diagram
+from sono.invariants.crossings import linking_numbers, planar_diagram
 from sono.invariants.diagrams import (
     Polynomial,
     alexander_polynomial,
     as_crossings,
-    gauss_code,
-    shortened,
     times,
     written,
 )
 from sono.invariants.polynomials import alexander
 from sono.invariants.signatures import signature
+from sono.naming import tori
 from sono.naming.primes import Prime, pieces_of
 from sono.records import Record
 
@@ -38,13 +35,14 @@ class Identity(Record):
     """What knot or link a curve is, and what tells it.
 
     `names` are those of all types in the table, prime knots to 13 crossings, prime links to 9 and their
-    sums, that it can be; "m" is a mirror image, "#" a connected sum, "+" stands between parts that are not
-    linked, "?" is a part without a name, if others have one. A sum of links does not say which of their
-    components are joined. `known` tells how: "proven" where moves make the table's diagrams of the curve's,
-    and there is one name; "invariants" where these agree, and its diagram has so few crossings that the
-    table has its type; "not in the table"; or "undecided" where the HOMFLY polynomial takes too long, or
-    where a type in the table shares the invariants, but a larger one may as well: `may_be` has the names
-    with such types. Only a proof rules out that a diagram hides a sum.
+    sums, that it can be, or T(p,q) if it is a larger torus knot or link; "m" is a mirror image, "#" a
+    connected sum, "+" stands between parts that are not linked, "?" is a part without a name, if others have
+    one. A sum of links does not say which of their components are joined. `known` tells how: "proven" where
+    moves make the table's diagrams of the curve's, or its diagram is a closed braid that is proven to be that
+    of a torus link, and there is one name; "invariants" where these agree, and its diagram has so few
+    crossings that the table has its type; "not in the table"; or "undecided" where the HOMFLY polynomial
+    takes too long, or where a type in the table shares the invariants, but a larger one may as well: `may_be`
+    has the names with such types. Only a proof rules out that a diagram hides a sum.
 
     `pd` is the PD code of the curve's simplified diagram: each crossing's four edges, counter-clockwise from
     the incoming lower one. It has so many `crossings`, and no trace of the `circles` that have none.
@@ -86,16 +84,17 @@ def identify(curve: Components) -> Identity:
     """Return what knot or link a curve is. Raises `TooEntangledError`, and `CurveError` if it crosses itself.
 
     The prime parts of its diagram are looked up by their HOMFLY polynomials; then moves are sought that make
-    the table's diagrams of them.
+    the table's diagrams of them. What is a closed braid is a torus link if its powers say so.
     """
-    gauss = shortened(gauss_code(diagram(curve)))
+    gauss = tori.shown(curve)
     pieces = pieces_of(gauss)
     # The table's diagram may have the components in another order.
-    linking = linking_matrix(as_crossings(gauss))
+    linking = linking_numbers(as_crossings(gauss))
     if [len(piece) for piece in pieces] == [1]:
         gauss = pieces[0][0].diagram
     found = as_crossings(gauss)
     primes = [prime for piece in pieces for prime in piece]
+    torus = primes[0].torus if len(primes) == 1 else None
     may_be = [[prime.names or prime.may_be for prime in piece] for piece in pieces]
     polynomial = polynomial_of(pieces)
     return Identity(
@@ -105,9 +104,9 @@ def identify(curve: Components) -> Identity:
         components=len(curve),
         crossings=len(found.sign),
         circles=gauss[0].count([]),
-        determinant=round(alexander(found, -1)),
-        signature=signature(found, -1),
-        linking=tuple(linking[np.triu_indices(len(curve), 1)].tolist()),
+        determinant=tori.determinant(*torus) if torus else round(alexander(found, -1)),
+        signature=tori.signature(*torus) if torus else signature(found, -1),
+        linking=linking,
         homfly=None if polynomial is None else written(polynomial),
         alexander=None if polynomial is None else alexander_polynomial(polynomial),
         pd=tuple(planar_diagram(found)),

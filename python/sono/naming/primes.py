@@ -10,9 +10,11 @@ import math
 from dataclasses import dataclass, replace
 
 from sono import _core
+from sono.invariants.braids import torus_type
 from sono.invariants.diagrams import Gauss, Polynomial, as_crossings, homfly_polynomial
 from sono.invariants.identify import ORDERS
 from sono.invariants.signatures import signature
+from sono.naming import tori
 from sono.naming.known import Type, mirrored, mirrored_polynomial, must_be_known, sharing
 
 MOST_SIMPLER, MOST_PROOF = 1_000, 10_000
@@ -27,8 +29,8 @@ class Prime:
     """A prime part of a link: its smallest diagram that was met, and its HOMFLY polynomial, if it is known.
 
     `names` are those of types of which it must be one; if it is `proven`, there is one name. `may_be` has
-    those that its invariants allow where it may be a larger type as well. It `is_new` where they allow
-    none.
+    those that its invariants allow where it may be a larger type as well. It `is_new` where the table does
+    not have it: where they allow none, and where it is proven to be the torus knot or link T(p,q) of `torus`.
     """
 
     diagram: Gauss
@@ -37,10 +39,13 @@ class Prime:
     names: list[str]
     may_be: list[str]
     proven: bool
+    torus: tuple[int, int] | None = None
 
 
 def pieces_of(gauss: Gauss) -> list[list[Prime]]:
     """Return the prime parts of each piece that is apart."""
+    if torus := _torus(gauss):
+        return [[torus]]
     pieces = [list(map(_known, piece)) for piece in _core.pieces(gauss, MOST_SIMPLER)]
     unknown = [len(prime.diagram[1]) for piece in pieces for prime in piece if not prime.names]
     if unknown and max(unknown) <= MOST_UNKNOWN:
@@ -58,6 +63,8 @@ def mirror_of(prime: Prime) -> Prime:
 
 
 def _known(prime: Gauss) -> Prime:
+    if torus := _torus(prime):
+        return torus
     polynomial = homfly_polynomial(prime)
     types = sharing(polynomial) if polynomial else []
     at = _core.meeting(prime, [type.diagram for type in types], MOST_PROOF) if types else None
@@ -68,6 +75,14 @@ def _known(prime: Gauss) -> Prime:
     is_new = not possible and (polynomial is not None or _is_alternating(prime))
     names, may_be = (possible, []) if must_be_known(prime) else ([], possible)
     return Prime(prime, is_new, polynomial, names, may_be, False)
+
+
+def _torus(gauss: Gauss) -> Prime | None:
+    """Return the torus knot or link that a diagram is by proof, if the table has it not."""
+    type = torus_type(gauss)
+    if type is None or tori.is_tabled(*type):
+        return None
+    return Prime(gauss, True, homfly_polynomial(gauss), [tori.name(*type)], [], True, type)
 
 
 def _may_be(prime: Gauss, type: Type) -> bool:

@@ -11,9 +11,10 @@ from typing import Literal, Self
 
 from sono import _core
 from sono.curve import Components
-from sono.invariants.crossings import diagram
-from sono.invariants.diagrams import Gauss, as_crossings, gauss_code, shortened
+from sono.invariants.crossings import MOST_CROSSINGS, linking_numbers
+from sono.invariants.diagrams import Gauss, as_crossings
 from sono.invariants.identify import fingerprint_of
+from sono.naming import tori
 from sono.naming.identity import MOST_NAMES, names_of, polynomial_of
 from sono.naming.known import mirrored
 from sono.naming.primes import MOST_PROOF, Prime, mirror_of, pieces_of
@@ -34,10 +35,10 @@ class Verdict(Record):
     The `verdict` "same" does not mind in which order components come, nor whether all of them are reversed;
     where only some are, a link may be another one.
     `known` tells how: "proven" where moves make one diagram of the other, or both of them diagrams of the
-    table; "invariants" where all of these agree, which is evidence and no proof, or where one of them
-    differs, which is decisive: `differs` names it. "mirror images" are not known to be the same as well.
-    What is "undecided" shares its invariants with several types, or takes too long for HOMFLY. `name` and
-    `other_name` are the names as `identify` gives them, or None.
+    table, or both are proven to be torus links; "invariants" where all of these agree, which is evidence and
+    no proof, or where one of them differs, which is decisive: `differs` names it. "mirror images" are not
+    known to be the same as well. What is "undecided" shares its invariants with several types, or takes too
+    long for HOMFLY. `name` and `other_name` are the names as `identify` gives them, or None.
 
     >>> import sono
     >>> found = sono.verify("3_1", "4_1")
@@ -54,7 +55,7 @@ class Verdict(Record):
 
 def verify(one: Components, other: Components) -> Verdict:
     """Compare the types of two curves. Raises `TooEntangledError`, and `CurveError` if one crosses itself."""
-    here, there = (_Type.of(shortened(gauss_code(diagram(curve)))) for curve in (one, other))
+    here, there = (_Type.of(tori.shown(curve)) for curve in (one, other))
     names = here.name, there.name
     as_is = here.relation(there)
     image = as_is if as_is == PROVEN else here.relation(there.image())
@@ -89,7 +90,11 @@ class _Type:
 
         One that would take too long is None.
         """
-        linking, signatures, alexander = fingerprint_of(as_crossings(self.gauss))
+        found = as_crossings(self.gauss)
+        small = len(found.sign) <= MOST_CROSSINGS
+        linking, signatures, alexander = (
+            fingerprint_of(found) if small else (linking_numbers(found), None, None)
+        )
         return {
             "components": len(self.gauss[0]),
             "linking numbers": sorted(linking),
@@ -121,10 +126,12 @@ class _Type:
     @property
     def is_in_table(self) -> bool:
         """Whether the table has all its parts, one of those that share their invariants."""
-        return all(prime.names for prime in self.primes) and len(self.names) < MOST_NAMES
+        return all(prime.names and not prime.is_new for prime in self.primes) and len(self.names) < MOST_NAMES
 
     def relation(self, other: "_Type") -> str:
         """Tell how it is known that another type is the same; if it is not, in what they differ."""
+        if self.is_proven and other.is_proven and _is_one(self, other):
+            return PROVEN
         mine, theirs = self.invariants(), other.invariants()
         for key, value in mine.items():
             if None not in (value, theirs[key]) and value != theirs[key]:
@@ -137,8 +144,8 @@ class _Type:
         return UNDECIDED if several or None in (*mine.values(), *theirs.values()) else INVARIANTS
 
     def _is_named_unlike(self, other: "_Type") -> bool:
-        """Tell whether the table has one of them, and other names, or none, for the other."""
-        if self.is_in_table and other.is_in_table:
+        """Tell whether they have other names, or the table has one of them, and none for the other."""
+        if (self.is_proven and other.is_proven) or (self.is_in_table and other.is_in_table):
             return not {*self.names} & {*other.names}
         named, less = (self, other) if self.is_in_table else (other, self)
         return named.is_in_table and any(prime.is_new for prime in less.primes)
@@ -188,5 +195,10 @@ def _tells_the_whole(pieces: list[list[Prime]]) -> bool:
     """
     if any(len(piece) > 1 and any(len(prime.diagram[0]) > 1 for prime in piece) for piece in pieces):
         return False
-    knots = [len(prime.diagram[0]) == 1 and len(prime.diagram[1]) <= INVERTIBLE for prime in chain(*pieces)]
-    return knots.count(False) <= 1
+    return [_is_invertible(prime) for prime in chain(*pieces)].count(False) <= 1
+
+
+def _is_invertible(prime: Prime) -> bool:
+    """Tell whether a part is known to be a knot that is the same when it is reversed; torus knots are."""
+    knot, crossings = len(prime.diagram[0]) == 1, len(prime.diagram[1])
+    return knot and (crossings <= INVERTIBLE or prime.torus is not None)

@@ -6,13 +6,13 @@
 (True, False)
 """
 
-import math
 import re
 from contextlib import suppress
 from functools import cache
 
 from sono.naming import identify
-from sono.naming.known import MOST_OF_KNOTS, MOST_OF_LINKS, is_amphichiral
+from sono.naming.known import MOST_OF_KNOTS, is_amphichiral
+from sono.naming.tori import is_tabled as is_tabled_torus
 from sono.starts.links import link_row
 from sono.starts.names import CHAIN, TORUS, crossings, matched, start
 from sono.starts.spelling import Part, spelled, summands
@@ -78,7 +78,7 @@ def _parts(part: Part) -> list[Part]:
         return [Part(f"chain{numbers[0]}", part.mirrored)]
     if pattern == TORUS and 1 in map(abs, numbers):
         return []
-    if pattern == TORUS and not _is_small(*map(abs, numbers)):
+    if pattern == TORUS and not is_tabled_torus(*numbers):
         p, q = sorted(map(abs, numbers))
         return [Part(f"T({p},{q})", part.mirrored != (numbers[0] * numbers[1] < 0))]
     with suppress(ValueError):  # no knot's name after all, or a curve too entangled
@@ -93,11 +93,6 @@ def _identified(part: Part) -> list[Part]:
     if len(names) != 1 or set(names[0]) & set("?+"):
         raise ValueError(f"{part.name} is none of the tables")
     return [Part(one.name.split("{")[0], one.mirrored != part.mirrored) for one in summands(names[0])]
-
-
-def _is_small(p: int, q: int) -> bool:
-    """Tell whether the tables have a torus type."""
-    return min(p * (q - 1), q * (p - 1)) <= (MOST_OF_KNOTS if math.gcd(p, q) == 1 else MOST_OF_LINKS)
 
 
 def _unhanded(part: Part, turned: int, parts: int) -> Part:
