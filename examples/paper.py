@@ -1,6 +1,6 @@
 """The tables and figures of the paper, made from nothing, and beside what it prints.
 
-    python examples/paper.py made/       # some minutes; needs pip install 'sono[plot]'
+    python examples/paper.py made/       # two minutes of a core; needs pip install 'sono[plot]'
 
 The paper is J. Baranska, P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots". The folder gets
 tables.md and a picture for each of its figures that shows a tight rope, lengths of ropes, or the model.
@@ -77,8 +77,7 @@ def main(folder: Path) -> None:
     shown = list(ropes("3_1", BEADS))
     save("trefoils", sono.plot.knot, *shown, beads=True, labels=[f"n = {n}" for n in BEADS])
     save("trefoil-15", sono.plot.knot, shown[0], beads=True)
-    # As tight as it gets in this time; it is for its looks.
-    save("torus-2-59", sono.plot.knot, sono.tighten("T(2,59)", dl=0.5, trials=1, time_limit=120))
+    save("torus-2-59", sono.plot.knot, sono.tighten("T(2,59)", dl=0.5, trials=1))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import itertools
 import math
 import os
+import re
 import sys
 import zipfile
 from pathlib import Path
@@ -313,3 +314,15 @@ def test_the_library_writes_what_the_command_does(sono: Sono) -> None:
         package.export("c.stl", "T(2,103)")
     with pytest.raises(ValueError, match="no format of solids"):
         package.export("c.xyz", "3_1")
+
+
+def test_components_have_colours_of_their_own(sono: Sono, folder: Path) -> None:
+    for suffix in ("glb", "3mf"):
+        assert sono("export", "Borromean", "-o", f"rings.{suffix}", "--tolerance", "0.2").exit_code == 0
+    meshes = trimesh.load_scene(folder / "rings.glb").geometry.values()
+    assert len({tuple(mesh.visual.material.baseColorFactor) for mesh in meshes}) == 3
+    with zipfile.ZipFile(folder / "rings.3mf") as archive:
+        model = archive.read("3D/3dmodel.model").decode()
+    paints = re.findall('displaycolor="(#[0-9A-F]{6})"', model)
+    assert len(set(paints)) == 3
+    assert re.findall('pid="1" pindex="([0-9]+)"', model) == ["0", "1", "2"]

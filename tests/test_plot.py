@@ -11,7 +11,7 @@ from sono.figures.plot import along, atlas, sheet
 from sono.figures.plot.balls import FROM_LIGHT, LIGHT, Balls, picture
 from sono.figures.plot.convergence import Fit
 from sono.figures.plot.curvature import torsion
-from sono.figures.plot.views import seen
+from sono.figures.turning import facing
 from sono.shape import curvature
 
 pytest.importorskip("matplotlib")
@@ -103,7 +103,7 @@ def test_the_view_is_a_rotation_that_lays_a_curve_flat() -> None:
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     turn *= np.sign(np.linalg.det(turn))
     curve = list(sono.start("8_20", known=True))
-    one, other = seen(curve), seen([component @ turn.T + 7 for component in curve])
+    one, other = facing(curve), facing([component @ turn.T + 7 for component in curve])
     for before, after, again in zip(curve, one, other, strict=True):
         assert np.linalg.norm(np.diff(before, axis=0), axis=1) == pytest.approx(
             np.linalg.norm(np.diff(after, axis=0), axis=1)
@@ -118,7 +118,7 @@ def test_the_view_is_a_rotation_that_lays_a_curve_flat() -> None:
 @pytest.mark.parametrize("name", ["3_1", "m3_1"])
 def test_the_picture_of_a_crossing_has_the_upper_strand_in_front(name: str) -> None:
     """Colour each vertex by whether it is high up; where strands cross, high ones are seen."""
-    (rope,) = seen(sono.start(name, known=True))
+    (rope,) = facing(sono.start(name, known=True))
     high = rope[:, 2] > 0
     colours = np.where(high[:, None], RED, BLUE)
     low, top = rope[:, :2].min(axis=0) - 1, rope[:, :2].max(axis=0) + 1

@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from sono.curve import Curve as Curve
     from sono.curve import Forces as Forces
     from sono.curve import Measures as Measures
-    from sono.figures.export import export as export
     from sono.figures.solids import Solid as Solid
     from sono.formats import FormatError as FormatError
     from sono.invariants import TooEntangledError as TooEntangledError
@@ -46,6 +45,8 @@ if TYPE_CHECKING:
     from sono.naming import Verdict as Verdict
     from sono.searching import Minimum as Minimum
     from sono.shape import Descriptors as Descriptors
+    from sono.showing import export as export
+    from sono.showing import view as view
     from sono.thickness import Thickness as Thickness
     from sono.thickness import sharpen as sharpen
     from sono.tightening import KnotTypeError as KnotTypeError
@@ -53,7 +54,6 @@ if TYPE_CHECKING:
     from sono.tightening import Settings as Settings
     from sono.tightening import Stopped as Stopped
     from sono.tightening import Tight as Tight
-    from sono.views import view as view
 
 _HOMES = {
     "CurveError": "sono._core",
@@ -77,7 +77,7 @@ _HOMES = {
     "Comparison": "sono.comparison",
     "compare": "sono.comparison",
     "Solid": "sono.figures.solids",
-    "export": "sono.figures.export",
+    "export": "sono.showing",
     "Descriptors": "sono.shape",
     "descriptors": "sono.calls",
     "forces": "sono.calls",
@@ -91,7 +91,7 @@ _HOMES = {
     "start": "sono.calls",
     "tighten": "sono.calls",
     "verify": "sono.calls",
-    "view": "sono.views",
+    "view": "sono.showing",
     "write": "sono.calls",
 }
 

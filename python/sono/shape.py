@@ -29,9 +29,10 @@ class Descriptors(Record):
     """What tells the shape of a curve: lengths in the unit of its vertices, angles in radians.
 
     Of the crossings that are seen, in the mean over all directions, `writhe` is the sum of signs, +1 for a
-    right-handed one, and `acn`, the average crossing number, the number; both are exact for the polygon. For
-    a link that is of all crossings; `self_writhe` is of those of components with themselves, and the rest of
-    the writhe twice the sum of the linking numbers.
+    right-handed one, and `acn`, the average crossing number, the number; both are exact for the polygon, and
+    not those of the smooth knot: the tight trefoil of 120, 240, 480, 960 vertices has acn 4.2874, 4.2842,
+    4.2833, 4.2828. For a link that is of all crossings; `self_writhe` is of those of components with
+    themselves, and the rest of the writhe twice the sum of the linking numbers.
 
     `radius_of_gyration` is the root of the mean squared distance from the centre of mass, the curve being a
     wire of even weight, and `gyration` are the eigenvalues of its gyration tensor, the largest first, whose

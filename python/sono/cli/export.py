@@ -71,8 +71,8 @@ def command(
 
     The rope is laid along the curve's inscribed knot, scaled so that strands of the rope's diameter just
     touch. They are printed thinner by the gap, which they keep everywhere, so that they do not fuse. The
-    components of a link are bodies of their own, but for .stl and .ply, which have one. All but .3mf needs
-    the extra sono[mesh].
+    components of a link are bodies of their own, but for .stl and .ply, which have one; .glb and .3mf have
+    their colours, too. All but .3mf needs the extra sono[mesh].
 
     \b
       sono export 4_1 -o figure8.stl --rope-diameter 6mm

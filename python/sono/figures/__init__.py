@@ -1,5 +1,5 @@
 """Pictures, pages and models of tight ropes.
 
-May import `calls`, `certificates`, `curve`, `formats`, `invariants`, `model`, `naming`, `printing`,
+May import `certificates`, `curve`, `formats`, `invariants`, `model`, `naming`, `printing`,
 `records`, `shape`, `starts` and `tables`.
 """

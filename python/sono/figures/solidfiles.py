@@ -3,11 +3,13 @@
 from pathlib import PurePath
 
 from sono.figures import threemf
+from sono.figures.plot.sheet import colour
 from sono.figures.solids import Solid
 from sono.formats import FormatError, save, unpacked
 
 FORMATS = ("stl", "obj", "ply", "glb", "3mf")
-"""A suffix each. Those of .stl and .ply have all components in one body, the others a body for each."""
+"""A suffix each. Those of .stl and .ply have all components in one body, the others a body for each, and
+.glb and .3mf their colours."""
 
 UNIT = {"glb": 1e-3}
 """A millimetre where that is not 1: glTF has metres."""
@@ -35,8 +37,18 @@ def write(path: str, solid: Solid, format: str) -> None:
         cure = "pip install 'sono[mesh]', or name a file .3mf"
         raise FormatError(f"{path}: is written by trimesh; {cure}") from None
     scene = trimesh.Scene()
-    for name, mesh in meshes.items():
+    for c, (name, mesh) in enumerate(meshes.items()):
         vertices = mesh.vertices * UNIT.get(format, 1)
         body = trimesh.Trimesh(vertices, mesh.faces, process=False)
+        if format == "glb":
+            paint = trimesh.visual.material.PBRMaterial(
+                baseColorFactor=_linear(colour(c)), metallicFactor=0.0
+            )
+            body.visual = trimesh.visual.TextureVisuals(material=paint)
         scene.add_geometry(body, node_name=name, geom_name=name)
     return save(path, scene.export(file_type=format))
+
+
+def _linear(colour: str) -> list[float]:
+    """Return the red, green, blue and opacity of a colour as glTF has them."""
+    return [(int(colour[k : k + 2], 16) / 255) ** 2.2 for k in (1, 3, 5)] + [1.0]

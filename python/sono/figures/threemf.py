@@ -1,4 +1,4 @@
-"""3MF files: a zip of XML, in millimetres, each component an object of its own.
+"""3MF files: a zip of XML, in millimetres, each component an object of its own, in its own colour.
 
 Written here, since others put the time and random numbers in. Source: 3MF Core Specification 1.3.
 """
@@ -7,6 +7,7 @@ import io
 import zipfile
 from collections.abc import Mapping
 
+from sono.figures.plot.sheet import colour
 from sono.figures.tube import Mesh
 
 _HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -35,12 +36,14 @@ def write(meshes: Mapping[str, Mesh]) -> bytes:
 
 
 def _model(meshes: Mapping[str, Mesh]) -> str:
-    objects = "".join(_object(k, name, mesh) for k, (name, mesh) in enumerate(meshes.items(), 1))
-    items = "".join(f'<item objectid="{k}"/>\n' for k in range(1, len(meshes) + 1))
+    paints = "".join(f'<base name="{name}" displaycolor="{colour(k)}"/>\n' for k, name in enumerate(meshes))
+    objects = "".join(_object(k, name, mesh) for k, (name, mesh) in enumerate(meshes.items()))
+    items = "".join(f'<item objectid="{k + 2}"/>\n' for k in range(len(meshes)))
     core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
     return (
         f'{_HEAD}<model unit="millimeter" xml:lang="en" xmlns="{core}">\n'
-        f"<resources>\n{objects}</resources>\n<build>\n{items}</build>\n</model>\n"
+        f'<resources>\n<basematerials id="1">\n{paints}</basematerials>\n{objects}</resources>\n'
+        f"<build>\n{items}</build>\n</model>\n"
     )
 
 
@@ -48,6 +51,7 @@ def _object(k: int, name: str, mesh: Mesh) -> str:
     vertices = "".join(f'<vertex x="{x:.6f}" y="{y:.6f}" z="{z:.6f}"/>\n' for x, y, z in mesh.vertices)
     triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>\n' for a, b, c in mesh.faces)
     return (
-        f'<object id="{k}" name="{name}" type="model">\n<mesh>\n<vertices>\n{vertices}</vertices>\n'
+        f'<object id="{k + 2}" name="{name}" type="model" pid="1" pindex="{k}">\n'
+        f"<mesh>\n<vertices>\n{vertices}</vertices>\n"
         f"<triangles>\n{triangles}</triangles>\n</mesh>\n</object>\n"
     )

@@ -9,6 +9,10 @@ from sono.curve import Components, Floats
 SAMPLES = 240
 """Points of each component by which curves are laid on each other."""
 
+ROUND = 1.15
+"""A rope is round, and turned so that what is farthest from its axis is at the top, if its two largest
+radii of gyration are in no larger ratio; else it lies along its longest axis."""
+
 
 def turned(curves: Sequence[Components]) -> list[Floats]:
     """Return a rotation (3, 3) for each curve, whose rows are the directions right, up and to the eye.
@@ -32,12 +36,34 @@ def turned(curves: Sequence[Components]) -> list[Floats]:
     return frames
 
 
+def facing(curve: Components) -> list[Floats]:
+    """Return a curve with its centre at the origin, x to the right, y upward, and z to the eye."""
+    points = np.vstack(curve)
+    frame = principal(points)
+    return [(component - points.mean(axis=0)) @ frame.T for component in curve]
+
+
 def principal(points: Floats) -> Floats:
-    """Return the rotation (3, 3) that turns the widest side of points (m, k, 3) to the eye."""
-    flat = points.reshape(-1, 3)
-    axes: Floats = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)[2]
-    axes[2] = np.cross(axes[0], axes[1])
-    return axes
+    """Return the rotation (3, 3) that turns the widest side of points (..., 3) to the eye.
+
+    It lays their longest principal axis to the right. The third moments tell the ends of axes apart, so that
+    points are seen from the same side however they lie.
+    """
+    arms = points.reshape(-1, 3) - points.reshape(-1, 3).mean(axis=0)
+    squares, axes = np.linalg.eigh(arms.T @ arms)
+    skew = ((arms @ axes) ** 3).sum(axis=0)
+    to_eye, _, along = (axes * np.where(skew < 0, -1, 1)).T
+    turn = np.array([along, np.cross(to_eye, along), to_eye])
+    if squares[2] < ROUND**2 * squares[1]:
+        turn = _farthest_up(arms @ turn.T) @ turn
+    return turn
+
+
+def _farthest_up(arms: Floats) -> Floats:
+    """Return the turn round the z axis after which the point farthest from it is at the top."""
+    far = np.hypot(arms[:, 0], arms[:, 1])
+    x, y = arms[np.argmax(far), :2] / far.max()
+    return np.array([[y, -x, 0], [x, y, 0], [0, 0, 1]])
 
 
 def _sampled(curve: Components) -> Floats:

@@ -66,7 +66,7 @@ class Camera {
   }
 }
 
-/** Return the ring that is hit first by the line of sight through (x, y), from -1 to 1, if any is. */
+/** Return the vertex of the ring that is hit first by the line of sight through (x, y), from -1 to 1; null if none is. */
 function struck(curve, look, x, y, radius) {
   const sight = unit([x / look.lens[0], y / look.lens[1], -1]);
   let nearest = Infinity, found = null;
@@ -75,5 +75,13 @@ function struck(curve, look, x, y, radius) {
     const hit = ahead - Math.sqrt(Math.max(0, radius * radius - off));
     if (off < radius * radius && hit < nearest && ahead > 0) [nearest, found] = [hit, ring];
   }
-  return found;
+  return found && abreast(curve, found, scaled(sight, nearest), look);
+}
+
+/** Return which of the vertices that a ring stands for is most nearly abreast of a place in the picture's space. */
+function abreast(curve, { vertex, tangent }, place, look) {
+  const along = applied(look.turn, tangent), stride = curve.stride(curve.component[vertex]);
+  const off = (i) => Math.abs(dot(sub(look.seen(curve.vertex(i)), place), along));
+  const near = Array.from({ length: 2 * stride - 1 }, (_, k) => curve.along(vertex, k + 1 - stride));
+  return near.reduce((a, b) => (off(b) < off(a) ? b : a));
 }

@@ -37,7 +37,7 @@ const DYES = {
   arclength: {
     label: "Arclength", of: "arclength / R, each component", scale: TWILIGHT,
     value: (c, i) => c.arclength[i] - c.arclength[c.first[c.component[i]]],
-    most: (c, k) => c.ends[k] - (k ? c.ends[k - 1] : 0),
+    most: (c, k) => c.round(k),
   },
 };
 

@@ -1,11 +1,23 @@
 // A curve as it came: vertices at R = 1 and what is known of each; and what is reckoned from them.
 
-/** The distance between two rings of a tube at most, but for the coarsest ropes: an arc of radius 1 rises 0.002 over it. */
+/** The distance between two rings of a tube: an arc of radius 1 rises 0.002 over it. */
 const RING = 0.12;
 
+/** Rings of a rope, beyond which no edge is cut into pieces: the longer it is, the smaller it is seen. */
+const RINGS = 1500;
+
+const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+
 /** Decode base64 of little-endian numbers. */
-function numbers(text, Kind) {
-  return new Kind(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+const numbers = (text, Kind) => new Kind(bytes(text).buffer);
+
+/** Decode shares of `most`. */
+const shares = (text, most) => Float32Array.from(numbers(text, Uint16Array), (x) => (most * x) / 65535);
+
+/** Decode coordinates: steps from a corner, of three bytes each. */
+function places({ vertices, corner, step }) {
+  const b = bytes(vertices);
+  return Float32Array.from({ length: b.length / 3 }, (_, k) => corner[k % 3] + step * (b[3 * k] + 256 * b[3 * k + 1] + 65536 * b[3 * k + 2]));
 }
 
 const add = (a, b, t = 1) => [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
@@ -28,11 +40,11 @@ const turnedAcross = (u, t) => unit(add(u, t, -dot(u, t)));
 class Curve {
   constructor(given) {
     Object.assign(this, given);
-    this.vertices = numbers(given.vertices, Float32Array);
-    this.curvature = numbers(given.curvature, Float32Array);
-    this.pairs = numbers(given.pairs, Uint32Array);
-    this.pressing = numbers(given.pressing, Float32Array);
+    this.vertices = places(given);
     this.n = this.vertices.length / 3;
+    this.curvature = shares(given.curvature, 1);
+    this.pairs = numbers(given.pairs, this.n > 65536 ? Uint32Array : Uint16Array);
+    this.pressing = shares(given.pressing, given.strongest);
     this.component = this.sizes.flatMap((size, c) => Array(size).fill(c));
     this.first = this.sizes.map((_, c) => this.sizes.slice(0, c).reduce((a, b) => a + b, 0));
     this.measureAlong();
@@ -74,7 +86,6 @@ class Curve {
         this.force[i] += (2 * force) / (this.edge[i] + this.edge[this.along(i, -1)]);
       }
     });
-    this.strongest = this.pressing.reduce((a, b) => Math.max(a, b), 0);
   }
 
   mean() {
@@ -102,6 +113,16 @@ class Curve {
     return s - this.arclength[low] > this.edge[low] / 2 ? this.along(low, 1) : low;
   }
 
+  /** Return how long a component is. */
+  round(c) {
+    return this.ends[c] - (c ? this.ends[c - 1] : 0);
+  }
+
+  /** Return how many vertices of a component there are to a ring. */
+  stride(c) {
+    return Math.max(1, Math.floor((RING * this.sizes[c]) / this.round(c)));
+  }
+
   /**
    * Return the rings of the tube, a list a component: centre, a frame across the axis, and the vertex.
    *
@@ -114,9 +135,10 @@ class Curve {
   }
 
   axis(c) {
-    const pieces = Math.min(16, Math.ceil(this.length / this.n / RING));
+    const edge = this.round(c) / this.sizes[c], stride = this.stride(c);
+    const pieces = Math.min(16, Math.ceil(edge / Math.max(RING, this.length / RINGS)));
     const axis = [];
-    for (let i = this.first[c]; i < this.first[c] + this.sizes[c]; i++) {
+    for (let i = this.first[c]; i < this.first[c] + this.sizes[c]; i += stride) {
       const here = this.vertex(i);
       const before = scaled(add(this.vertex(this.along(i, -1)), here), 0.5);
       const after = scaled(add(this.vertex(this.along(i, 1)), here), 0.5);

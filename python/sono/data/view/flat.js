@@ -49,7 +49,7 @@ class FlatPainter {
 
   axis(curve, colours, thickness) {
     return curve.rings().flatMap((rings, c) => {
-      const along = curve.ends[c] - (c ? curve.ends[c - 1] : 0), pieces = Math.ceil(along / STROKE);
+      const pieces = Math.ceil(curve.round(c) / STROKE);
       return Array.from({ length: pieces }, (_, k) => {
         const [from, to] = [k, k + 1].map((piece) => Math.round((piece * rings.length) / pieces));
         const points = Array.from({ length: to - from + 2 }, (_, j) => rings[(from + j) % rings.length].centre);

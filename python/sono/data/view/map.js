@@ -60,10 +60,11 @@ class ContactMap {
     pen.font = "11px system-ui, sans-serif";
     const step = roundStep(curve.length / 4);
     for (let s = 0; s <= curve.length; s += step) {
+      const label = String(+s.toFixed(6));
       pen.textAlign = "center";
-      pen.fillText(+s.toFixed(6), this.place(s), side + 14);
+      pen.fillText(label, Math.min(this.place(s), side + 4 - pen.measureText(label).width / 2), side + 14);
       pen.textAlign = "right";
-      pen.fillText(+s.toFixed(6), -5, side - this.place(s) + 4);
+      pen.fillText(label, -5, side - this.place(s) + 4);
     }
     pen.textAlign = "right";
     pen.fillText("s / R", side, side + 26);

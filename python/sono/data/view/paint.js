@@ -1,7 +1,7 @@
 // The rope by WebGL2: rods between two rings each (rope, contacts, marks), and balls that are traced pixel by pixel.
 
 /** Sides of the rope, and of a contact, which is thin. */
-const SIDES = 32, FEW_SIDES = 8;
+const SIDES = 24, FEW_SIDES = 8;
 
 const SEEN = `#version 300 es
 precision highp float;
@@ -70,14 +70,17 @@ function laidOut(rods) {
   return new Float32Array(rods.flatMap((rod) => rod.flatMap(({ centre, u, v, colour }) => [...centre, ...u, ...v, ...colour])));
 }
 
-/** The rope as rods. The colour of a ring is between those of the two vertices that are nearest. */
+/** The rope as rods. The colour of a ring is between those of the two vertices that are nearest, or the mean of all that it stands for. */
 function ropeRods(curve, colours) {
   const dyes = colours.map(linear);
-  return curve.rings().flatMap((axis) => {
+  return curve.rings().flatMap((axis, c) => {
+    const stride = curve.stride(c);
     const rings = axis.map((ring) => {
       const behind = ring.place < ring.vertex, share = behind ? ring.place - ring.vertex + 1 : ring.place - ring.vertex;
       const one = behind ? curve.along(ring.vertex, -1) : ring.vertex;
-      return { ...ring, colour: mix(dyes[one], dyes[curve.along(one, 1)], share) };
+      const near = Array.from({ length: stride }, (_, k) => dyes[curve.along(ring.vertex, k - (stride >> 1))]);
+      const mean = () => scaled(near.reduce((a, b) => add(a, b)), 1 / stride);
+      return { ...ring, colour: stride > 1 ? mean() : mix(dyes[one], dyes[curve.along(one, 1)], share) };
     });
     return rings.map((ring, k) => [ring, rings[(k + 1) % rings.length]]);
   });

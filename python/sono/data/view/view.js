@@ -150,8 +150,8 @@ function between([i, j]) {
 function pointAtRope(event) {
   const box = stage.getBoundingClientRect(), x = (2 * (event.clientX - box.left)) / box.width - 1, y = 1 - (2 * (event.clientY - box.top)) / box.height;
   const view = look(), pixel = (-2 * view.shift[2]) / view.lens[1] / box.height;
-  const ring = struck(shown(), view, x, y, Math.max(state.radius, 6 * pixel));
-  mark(ring ? [ring.vertex] : []);
+  const vertex = struck(shown(), view, x, y, Math.max(state.radius, 6 * pixel));
+  mark(vertex === null ? [] : [vertex]);
 }
 
 function pointAtMap(event) {

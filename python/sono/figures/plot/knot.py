@@ -10,7 +10,7 @@ from sono import _core
 from sono.curve import Components, Floats, measure
 from sono.figures.plot.balls import Balls, picture
 from sono.figures.plot.sheet import label, library
-from sono.figures.plot.views import seen
+from sono.figures.turning import facing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +34,7 @@ def draw(ropes: Sequence[Components], labels: Sequence[str], beads: bool, axes: 
     A tube has the axis K_P and the radius R_c, or R_s where there is none: it fits into the bead rope. The
     components of a link have the colours of the cycle.
     """
-    drawn = [_balls(seen(rope), beads) for rope in ropes]
+    drawn = [_balls(facing(rope), beads) for rope in ropes]
     bounds = [balls.bounds() for balls in drawn]
     columns = len(ropes) if len(ropes) <= 3 else math.ceil(math.sqrt(len(ropes)))
     rows = math.ceil(len(ropes) / columns)

@@ -59,6 +59,15 @@ _SAME = {
 }
 
 
+def colour(component: int) -> str:
+    """Return the colour of a component on white paper, #RRGGBB.
+
+    >>> colour(0), colour(7) == colour(0)
+    ('#0072B2', True)
+    """
+    return COLOURS["light"][component % len(COLOURS["light"])]
+
+
 def library(module: str = "matplotlib") -> Any:
     """Import a module of matplotlib. Raises `ImportError` that names the extra."""
     try:

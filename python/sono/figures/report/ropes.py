@@ -69,7 +69,7 @@ def written(folder: Path, at: str, name: str, file: VertexFile, atlas: Mapping[s
     }
     row |= {key: atlas.get(key) for key in ("n_fine", "l_c_fine")}
     compared = published.beside(row, published.table(), published.VALUE)
-    if shown["known"] != "proven" and (doubt := published.doubt(compared)):
+    if shown["known"] != "proven" and (doubt := published.doubt({**compared, "file": f"{base}.txt"})):
         doubts.append(doubt)
     return Rope(
         _row(name, knot, at, compared) | {"type": shown["type"], "drawing": _drawn(file)},
