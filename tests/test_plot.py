@@ -281,7 +281,7 @@ def test_arclength_goes_on_from_one_component_to_the_next(axes: Any) -> None:
 
 
 def test_the_model_is_as_the_paper_has_it(pair: Any) -> None:
-    deviations, weight = sono.plot.model(pair)
+    deviations, weight = sono.plot.model(axes=pair)
     ends = {line.get_label(): line.get_ydata()[-1] for line in deviations.lines}
     assert ends["$dL_p$"] < 0 < ends["$dL_a$"] < ends["$dL_c$"]
     assert weight.lines[0].get_ydata()[-1] == pytest.approx(sono.model.weight(1.0))
