@@ -30,8 +30,8 @@
 //! So no edges meet at any time of the way, neighbours at their bead only: the polygon is embedded all the
 //! time, and the way is an isotopy. Places are numbers of 53 bits, between which the way is meant exactly;
 //! what is computed of it is off by some 1e-15 of the lengths that it is made of, 3 radii at most for two
-//! beads of a list, and k + 1 edges for an arc. [`ROUNDING`] of these is kept in hand in each comparison;
-//! where an edge gets as short as [`VANISHING`], so that digits cancel, nothing is taken as shown.
+//! beads of a list, and k + 1 edges for an arc. `ROUNDING` of these is kept in hand in each comparison;
+//! where an edge gets as short as `VANISHING`, so that digits cancel, nothing is taken as shown.
 
 use std::f64::consts::PI;
 

@@ -16,7 +16,7 @@
 //!    exact isotopy.
 //! 4. *A curve without R_c -> chords c* ([`rope_curve`]). The polygon Q of chords is measured: its radii M and
 //!    half distances are at least r_s >= c/0.55. Let each place of the curve K go straight to the place of its
-//!    chord that is as far along, as shares of both. Directions stay within [`MOST_TURN`] = 0.7 of that of the
+//!    chord that is as far along, as shares of both. Directions stay within `MOST_TURN` = 0.7 of that of the
 //!    chord, and places within c/5 of it. Two places of the moving curve are not one. If the vertices of Q
 //!    that are nearest to their chords' places count, they are 2 r_s - c - 2 c/5 > 2 c apart at least. Else let
 //!    D <= pi M + 2 c be the length of the chords from the one to the other, which turn by c/M at most at each

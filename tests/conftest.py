@@ -6,9 +6,9 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import pytest
 from click.testing import CliRunner, Result
@@ -18,6 +18,8 @@ from sono.cli import main
 from sono.tightening import engines
 
 Sono: TypeAlias = Callable[..., Result]
+T = TypeVar("T")
+
 Spawn: TypeAlias = Callable[..., subprocess.Popen[str]]
 
 QUICK = ("--trials", "1", "--set", "anneal_sweeps=5000")
@@ -87,6 +89,11 @@ def vertices(path: Path) -> str:
 
 def a_tenth(names: Iterable[str]) -> list[str]:
     """A tenth of names, another one each time, but the same in all workers of one run."""
-    one_run = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(time.time_ns()))
     every = sorted(names)
-    return random.Random(one_run).sample(every, -(-len(every) // 10))
+    return some(every, -(-len(every) // 10))
+
+
+def some(every: Sequence[T], many: int) -> list[T]:
+    """So many of them, other ones each time, but the same in all workers of one run."""
+    one_run = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(time.time_ns()))
+    return random.Random(one_run).sample(every, many)

@@ -162,7 +162,7 @@ def test_ropes_side_by_side_have_one_scale(axes: Any) -> None:
 def test_beads_and_tube_differ(axes: Any) -> None:
     rope = sono.tighten("3_1", 30)
     sono.plot.knot(rope, axes=axes)
-    rope.plot(axes, beads=True)
+    rope.plot(axes=axes, beads=True)
     smooth, beads = (np.asarray(image.get_array())[..., 3].mean() for image in axes.images)
     assert beads != smooth
 
@@ -203,7 +203,7 @@ def test_convergence_has_the_limits_in_its_legend(axes: Any) -> None:
         for n in (100, 200, 400, 800)
         if (dl := 30 / n)
     ]
-    sono.plot.convergence(rows, axes)
+    sono.plot.convergence(rows, axes=axes)
     texts = [text.get_text() for text in axes.get_legend().get_texts()]
     assert [text.split()[0] for text in texts] == ["$L_p$", "$L_a$", "$L_c$"]
     assert all(abs(float(text.split()[2]) - 30) < 1e-3 for text in texts)
@@ -213,7 +213,7 @@ def test_convergence_has_the_limits_in_its_legend(axes: Any) -> None:
 def test_convergence_takes_ropes_of_any_scale_and_measures(axes: Any) -> None:
     ropes = [sono.tighten("3_1", n) for n in (60, 120, 240, 480)]
     points: list[Any] = [ropes[0], 5 * ropes[1].curve[0], ropes[2].measures, ropes[3]]
-    sono.plot.convergence(points, axes)
+    sono.plot.convergence(points, axes=axes)
     dl = axes.lines[0].get_xdata()
     assert dl == pytest.approx([rope.measures.dl for rope in ropes])
     limit = float(axes.get_legend().get_texts()[1].get_text().split()[2])
@@ -222,14 +222,14 @@ def test_convergence_takes_ropes_of_any_scale_and_measures(axes: Any) -> None:
 
 def test_coarse_ropes_have_points_without_a_bound(axes: Any) -> None:
     rows = [{"n": n, "l_p": 30.0, "l_c": None if n < 30 else 31.0, "l_a": None} for n in (15, 20, 30)]
-    sono.plot.convergence(rows, axes)
+    sono.plot.convergence(rows, axes=axes)
     assert len(axes.get_legend().get_texts()) == 2
 
 
 def test_contacts_are_symmetric_and_of_the_forces(axes: Any) -> None:
     rope = sono.tighten("Hopf", 60)
     assert rope.forces is not None
-    sono.plot.contacts(rope, axes)
+    sono.plot.contacts(rope, axes=axes)
     places = {tuple(place) for place in np.asarray(axes.collections[0].get_offsets()).round(6)}
     assert places == {(y, x) for x, y in places}
     shown = axes.collections[0].get_array()
@@ -240,7 +240,7 @@ def test_contacts_are_symmetric_and_of_the_forces(axes: Any) -> None:
 
 
 def test_a_rope_without_contacts(axes: Any) -> None:
-    sono.plot.contacts(np.column_stack([np.cos(CIRCLE), np.sin(CIRCLE), 0 * CIRCLE]), axes)
+    sono.plot.contacts(np.column_stack([np.cos(CIRCLE), np.sin(CIRCLE), 0 * CIRCLE]), axes=axes)
     assert axes.collections[0].get_offsets().shape[0] % 2 == 0
 
 
@@ -263,7 +263,7 @@ def test_a_flat_circle_has_no_torsion_and_a_line_none_to_speak_of() -> None:
 
 
 def test_curvature_is_at_most_that_of_the_rope(axes: Any) -> None:
-    sono.plot.curvature(sono.tighten("3_1", 240), axes)
+    sono.plot.curvature(sono.tighten("3_1", 240), axes=axes)
     line = next(line for line in axes.lines if line.get_label() == "curvature")
     assert 0.8 < max(line.get_ydata()) < 1.01
     assert axes.get_ylim()[1] > 1
@@ -281,7 +281,7 @@ def test_arclength_goes_on_from_one_component_to_the_next(axes: Any) -> None:
 
 
 def test_the_model_is_as_the_paper_has_it(pair: Any) -> None:
-    deviations, weight = sono.plot.model(pair)
+    deviations, weight = sono.plot.model(axes=pair)
     ends = {line.get_label(): line.get_ydata()[-1] for line in deviations.lines}
     assert ends["$dL_p$"] < 0 < ends["$dL_a$"] < ends["$dL_c$"]
     assert weight.lines[0].get_ydata()[-1] == pytest.approx(sono.model.weight(1.0))
@@ -290,7 +290,7 @@ def test_the_model_is_as_the_paper_has_it(pair: Any) -> None:
 
 def test_minima_are_stems_beside_what_is_published(axes: Any) -> None:
     rows: list[Any] = [{"knot": "6_1", "l_a": 56.70, "hits": 13}, {"knot": "6_1", "l_a": 56.73, "hits": 4}]
-    sono.plot.minima(rows, "6_1", axes)
+    sono.plot.minima(rows, "6_1", axes=axes)
     published, stems = axes.lines
     assert published.get_xdata()[0] == pytest.approx(56.7058)
     assert list(zip(*stems.get_data(), strict=True)) == [(56.70, 13), (56.73, 4)]
@@ -339,7 +339,7 @@ def test_styles_differ_and_keep_to_themselves() -> None:
     for style in sheet.STYLES:
         with sono.plot.style(style):
             figure, (axes,) = sheet.sheet(1, 1, (2, 2))
-            sono.plot.curvature("Hopf", axes)
+            sono.plot.curvature("Hopf", axes=axes)
             grounds.append(figure.get_facecolor())
             assert axes.xaxis.get_ticklabels()[0].get_color() == sheet.PAPER[style][1]
     assert sum(grounds[0][:3]) == 3

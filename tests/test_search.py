@@ -168,15 +168,16 @@ def test_the_workers_do_not_matter() -> None:
 @pytest.mark.slow
 def test_a_saved_search_goes_on_as_if_it_had_never_stopped() -> None:
     whole = Search()
-    for _ in whole.run(source("3_1"), 40, here):
+    trials = 5 * search.ROUND
+    for _ in whole.run(source("3_1"), trials, here):
         pass
     half = Search()
-    pauses = half.run(source("3_1"), 40, here)
-    for many in range(search.ROUND, 5 * search.ROUND, search.ROUND):
+    pauses = half.run(source("3_1"), trials, here)
+    for many in range(search.ROUND, trials, search.ROUND):
         next(pauses)
         assert half.trials == many
         again = Search.restore(json.loads(json.dumps(half.state())))
-        assert run("3_1", 40, again).state() == whole.state()
+        assert run("3_1", trials, again).state() == whole.state()
 
 
 def test_seeds_begin_elsewhere() -> None:

@@ -117,7 +117,7 @@ def start(name: str, variant: int = 0, *, known: bool = False) -> Curve:
     return Curve(starts.start(name, whole("variant", variant, -(10**12))))
 
 
-def measure(vertices: Rope) -> Measures:
+def measure(vertices: Rope, /) -> Measures:
     """Measure a curve at the scale it has.
 
     Raises `CurveError`, a `ValueError`, for one that is no embedded closed curve. Source: J. Baranska,
@@ -131,7 +131,7 @@ def measure(vertices: Rope) -> Measures:
     return curve.measure(_components(vertices))
 
 
-def descriptors(vertices: Rope) -> Descriptors:
+def descriptors(vertices: Rope, /) -> Descriptors:
     """Describe the shape of a curve: writhe, size, bends and contacts; see `Descriptors`.
 
     All pairs of edges are summed: 2,000 vertices take a part of a second, 20,000 some seconds. Raises
@@ -144,7 +144,7 @@ def descriptors(vertices: Rope) -> Descriptors:
     return shape.descriptors(_components(vertices))
 
 
-def forces(vertices: Rope) -> Forces:
+def forces(vertices: Rope, /) -> Forces:
     """Find the forces that come nearest to balance on a curve, scaled to R_s = 1; see `Forces`.
 
     Raises `CurveError` for a curve that is not embedded.
@@ -155,7 +155,7 @@ def forces(vertices: Rope) -> Forces:
     return curve.forces(_components(vertices))
 
 
-def identify(vertices: Rope) -> Identity:
+def identify(vertices: Rope, /) -> Identity:
     """Name the knot or link that a curve is, of any scale; see `Identity`.
 
     Raises `CurveError` for a curve that is not embedded, `TooEntangledError`, a `ValueError`, where over 1000
@@ -167,7 +167,7 @@ def identify(vertices: Rope) -> Identity:
     return naming.identify(_components(vertices))
 
 
-def verify(one: Rope, other: Rope) -> Verdict:
+def verify(one: Rope, other: Rope, /) -> Verdict:
     """Tell whether two curves, of any scales, are the same knot or link; see `Verdict`.
 
     Raises `CurveError` for a curve that is not embedded, `TooEntangledError`, a `ValueError`, where over 1000
@@ -181,6 +181,7 @@ def verify(one: Rope, other: Rope) -> Verdict:
 
 def tighten(
     vertices: Rope,
+    /,
     n: int | None = None,
     *,
     dl: float | None = None,
@@ -220,7 +221,7 @@ def tighten(
     return best_of(run, math.inf if time_limit is None else time_limit, watch)
 
 
-def refine(vertices: Rope, n: int) -> Curve:
+def refine(vertices: Rope, /, n: int) -> Curve:
     """Return n vertices on the inscribed knot K_P of a rope, with equal edges on each component.
 
     Raises `CurveError` where there are too few for the curve, `ValueError` for n below 3 a component or above
@@ -234,6 +235,7 @@ def refine(vertices: Rope, n: int) -> Curve:
 
 def search(
     knot: AnyCurve,
+    /,
     trials: int = 64,
     *,
     jobs: int = 1,

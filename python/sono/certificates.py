@@ -85,7 +85,7 @@ class Certificate(Record):
         return f"{_rounded_up(digits).plus(self.l_c):f}"
 
 
-def certify(vertices: Rope) -> Certificate:
+def certify(vertices: Rope, /) -> Certificate:
     """Prove a bound on the ropelength of a curve's type; a name stands for the atlas's rope of the knot.
 
     Raises `CurveError` where nothing is proven, as its edges are too long for its bends or its distances,

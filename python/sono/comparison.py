@@ -35,7 +35,7 @@ class Comparison(Record):
     limit_difference: float | None
 
 
-def compare(rope: Rope, knot: str) -> Comparison:
+def compare(rope: Rope, /, knot: str) -> Comparison:
     """Compare a rope's lengths with the shortest published ropelength of a knot.
 
     Raises `CurveError` for a curve that is not embedded, `ValueError` for a name that is not known. The

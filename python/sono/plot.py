@@ -59,7 +59,7 @@ def knot(*ropes: Rope, axes: Axes | None = None, beads: bool = False, labels: Se
     return axes
 
 
-def convergence(points: Sequence[Point], axes: Axes | None = None) -> Axes:
+def convergence(points: Sequence[Point], /, *, axes: Axes | None = None) -> Axes:
     """Draw L_p, L_c and L_a of one knot against dl/R, with fits L_infinity + b dl + c dl^2.
 
     The points are ropes, their measures, or rows with n, l_p, l_c and l_a. The legend has L_infinity of each
@@ -76,7 +76,7 @@ def convergence(points: Sequence[Point], axes: Axes | None = None) -> Axes:
     return axes
 
 
-def contacts(rope: Rope, axes: Axes | None = None) -> Axes:
+def contacts(rope: Rope, /, *, axes: Axes | None = None) -> Axes:
     """Draw a map of the contact forces in a rope, arclength against arclength, both from 0 and in radii.
 
     Forces, in units of the mean tension, are colours and sizes. They are those of a tightened rope, or fitted
@@ -94,7 +94,7 @@ def contacts(rope: Rope, axes: Axes | None = None) -> Axes:
     return axes
 
 
-def curvature(rope: Rope, axes: Axes | None = None) -> Axes:
+def curvature(rope: Rope, /, *, axes: Axes | None = None) -> Axes:
     """Draw curvature and torsion along a rope, both times R, against arclength in radii.
 
     Curvature is 1/Rad, that of the arcs inscribed into the corners, and has a line at 1, the most that a
@@ -111,7 +111,7 @@ def curvature(rope: Rope, axes: Axes | None = None) -> Axes:
     return axes
 
 
-def model(axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+def model(*, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
     """Draw the toroidal model on two axes: deviations of dL_p, dL_c and dL_a from dL, and the weight a.
 
     Source: J. Baranska, P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots"; see `sono.model`.
@@ -127,7 +127,7 @@ def model(axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
     return pair
 
 
-def minima(found: Sequence[Minimum | Row], knot: str | None = None, axes: Axes | None = None) -> Axes:
+def minima(found: Sequence[Minimum | Row], /, knot: str | None = None, *, axes: Axes | None = None) -> Axes:
     """Draw the minima of a search: L_a, and in how many trials each was met.
 
     They are what `sono.search` gave, or rows with l_a and hits. With the name of the `knot` the shortest
@@ -146,7 +146,7 @@ def minima(found: Sequence[Minimum | Row], knot: str | None = None, axes: Axes |
     return axes
 
 
-def atlas(rows: Sequence[Row] | None = None, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
+def atlas(rows: Sequence[Row] | None = None, *, axes: Sequence[Axes] | None = None) -> Sequence[Axes]:
     """Draw the atlas's rows, or others, on two axes: L_a against crossing number, and less what is published.
 
     >>> import sono

@@ -14,7 +14,7 @@ DIGITS = 9
 class Drawn:
     """A rope among results, which can be drawn."""
 
-    def plot(self, axes: Any = None, *, beads: bool = False) -> Any:
+    def plot(self, *, axes: Any = None, beads: bool = False) -> Any:
         """Draw the rope as `sono.plot.knot` does, and return the axes. Needs the extra sono[plot]."""
         from sono import plot  # here, since results need no pictures
 

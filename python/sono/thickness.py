@@ -61,7 +61,7 @@ class Thickness(Record):
         return f"{Context(digits, ROUND_CEILING).plus(self.l_k):f}"
 
 
-def sharpen(vertices: Rope) -> Thickness:
+def sharpen(vertices: Rope, /) -> Thickness:
     """Prove a bound on the ropelength of a curve's type that is sharper than that of `certify`.
 
     Of what edges add to L_c, a fourth is left as a rule. It takes a second for hundreds of vertices. A name

@@ -102,15 +102,18 @@ def _figure(kind: str, read: Pictured, beads: bool) -> "Figure":
 
     if kind in ("model", "atlas"):
         figure, axes = sheet.sheet(2, 1, SIZES[kind])
-        plot.model(axes) if kind == "model" else plot.atlas(read.rows() if read.given else None, axes)
+        if kind == "model":
+            plot.model(axes=axes)
+        else:
+            plot.atlas(read.rows() if read.given else None, axes=axes)
     elif kind == "convergence":
         figure, axes = sheet.sheet(1, 1, SIZES[kind])
-        plot.convergence(read.points(), axes[0])
+        plot.convergence(read.points(), axes=axes[0])
     elif kind == "minima":
         knots = read.searches()
         figure, axes = _panels(kind, list(knots))
         for panel, (knot, rows) in zip(axes, knots.items(), strict=True):
-            plot.minima(rows, knot, panel)
+            plot.minima(rows, knot, axes=panel)
     elif kind == "knot":
         labels, ropes = zip(*read.ropes(), strict=True)
         figure, axes = sheet.sheet(1, 1, SIZES[kind])
@@ -119,7 +122,7 @@ def _figure(kind: str, read: Pictured, beads: bool) -> "Figure":
         labels, ropes = zip(*read.ropes(), strict=True)
         figure, axes = _panels(kind, labels)
         for panel, rope in zip(axes, ropes, strict=True):
-            (plot.contacts if kind == "contacts" else plot.curvature)(rope, panel)
+            (plot.contacts if kind == "contacts" else plot.curvature)(rope, axes=panel)
     return figure
 
 
