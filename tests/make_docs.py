@@ -223,7 +223,7 @@ def table(head: tuple[str, ...], rows: Any) -> str:
 
 def code(text: str) -> str:
     """Write code that may stand in a table."""
-    return f"<code>{text.replace('<', '&lt;').replace('|', '&#124;')}</code>"
+    return f"<code>{text.replace('<', '&lt;').replace('|', '&#124;<wbr>')}</code>"
 
 
 if __name__ == "__main__":
