@@ -35,7 +35,7 @@ BEFORE = {
 CHANGED = {
     "sono": "120,240,480 -> 60,120; n480 -> n120",
     "report": "report atlas -> report 3_1; 3_1 4_1 5_1 -n 120,240 -> 3_1 4_1 -n 120",
-    "plot": "240,480,960,1920 -> 60,120,240",
+    "plot": "240,480,960,1920 -> 60,120,240; plot knot 3_1 L6a4 -> plot curvature 3_1",
     "search": "8_4 --time-limit 60 -> 3_1 --trials 1; 6_1 9_1 --trials 64 -> 4_1 --trials 1",
     "tighten": "-n 960 -> -n 240; 120,240,480 -> 60,120",
     "view": "n480 -> n120",
