@@ -22,23 +22,23 @@ from sono.tightening.settings import default_settings
 DOCS = Path(__file__).parent.parent / "docs"
 
 BEFORE = {
-    "convert": "sono tighten 8_18 -n 240 -o 8_18.n960.txt",
+    "convert": "sono start 8_18 --known -o 8_18.n960.txt",
     "export": "sono start L6a1 --known -o tight.txt",
     "identify": "sono start 8_18 -o mystery.txt",
-    "measure": "sono tighten 3_1 -n 60 -o trefoil.n480.txt",
+    "measure": "sono start 3_1 --known -o trefoil.n480.txt",
     "tighten": "sono start 3_1 -o trefoil.txt",
-    "verify": "sono tighten 8_18 -n 240 -o 8_18.n960.txt",
-    "view": "sono start 3_1 -o trefoil.txt; sono tighten trefoil.txt -n 15,60,120",
+    "verify": "sono start 8_18 --known -o 8_18.n960.txt",
+    "view": "sono start 3_1 -o trefoil.txt; sono tighten trefoil.txt -n 15,60",
 }
 """What makes the files that examples of a command take."""
 
 CHANGED = {
-    "sono": "120,240,480 -> 60,120; n480 -> n120",
-    "report": "report atlas -> report 3_1; 3_1 4_1 5_1 -n 120,240 -> 3_1 4_1 -n 120",
-    "plot": "240,480,960,1920 -> 60,120,240",
+    "sono": "120,240,480 -> 60; n480 -> n60",
+    "report": "report atlas -> report 3_1; 3_1 4_1 5_1 -n 120,240 -> 3_1 Hopf -n 120",
+    "plot": "240,480,960,1920 -> 90,120,240; plot knot 3_1 L6a4 -> plot curvature 3_1",
     "search": "8_4 --time-limit 60 -> 3_1 --trials 1; 6_1 9_1 --trials 64 -> 4_1 --trials 1",
-    "tighten": "-n 960 -> -n 240; 120,240,480 -> 60,120",
-    "view": "n480 -> n120",
+    "tighten": "8_18 -n 960 -> 3_1 -n 120; 120,240,480 -> 60,120; -n 240 -> -n 60",
+    "view": "n60.txt trefoil.n480.txt -> n60.txt",
 }
 """What of the examples the tests change, so that they are done in no time."""
 
@@ -223,7 +223,7 @@ def table(head: tuple[str, ...], rows: Any) -> str:
 
 def code(text: str) -> str:
     """Write code that may stand in a table."""
-    return f"<code>{text.replace('<', '&lt;').replace('|', '&#124;')}</code>"
+    return f"<code>{text.replace('<', '&lt;').replace('|', '&#124;<wbr>')}</code>"
 
 
 if __name__ == "__main__":

@@ -103,9 +103,9 @@ def _near(want: str, got: str) -> bool:
     if not (_NUMBER.fullmatch(want) and _NUMBER.fullmatch(got) and re.search("[.e]", want)):
         return False
     a, b = (float(text.replace("−", "-")) for text in (want, got))
-    digits = len(want.partition("e")[0].partition(".")[2])
-    last = 0.0 if "e" in want else 10.0**-digits
-    return abs(a - b) <= max(1e-4 * abs(a), 1.01 * last) or max(abs(a), abs(b)) < 1e-6
+    digits, _, power = want.partition("e")
+    half = 0.501 * 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
+    return abs(a - b) <= max(1e-4 * abs(a), half) or max(abs(a), abs(b)) < 1e-6
 
 
 class _Checker(doctest.OutputChecker):
@@ -163,7 +163,9 @@ class Reader:
             told = [line for line in want.splitlines() if line.startswith("sono: ")]
             shown = "".join(line for line in want.splitlines(True) if not line.startswith("sono: "))
             assert same(shown, output), f"$ {command}\n{output}"
-            assert same("\n".join(sorted(told)), "\n".join(sorted(errors.splitlines()))), f"$ {command}\n{errors}"
+            assert same("\n".join(sorted(told)), "\n".join(sorted(errors.splitlines()))), (
+                f"$ {command}\n{errors}"
+            )
 
     def _examples(self, text: str, where: str, names: dict[str, Any]) -> None:
         test = doctest.DocTestParser().get_doctest(text, names, where, where, 0)

@@ -85,23 +85,47 @@ def test_links_lead_somewhere(page: Path) -> None:
             assert (page.parent / path).exists(), link
 
 
-@pytest.mark.skipif(not shutil.which("zensical", path=Path(sys.executable).parent), reason="needs sono[docs]")
-def test_the_site_builds_and_needs_no_network(tmp_path: Path) -> None:
-    for name in ("mkdocs.yml", "CHANGELOG.md"):
-        shutil.copy(HOME / name, tmp_path)
-    shutil.copytree(pages.DOCS, tmp_path / "docs")
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The documentation as a site."""
     zensical = shutil.which("zensical", path=Path(sys.executable).parent)
-    done = subprocess.run(
-        [str(zensical), "build", "--strict", "--clean"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    if not zensical:
+        pytest.skip("needs sono[docs]")
+    folder = tmp_path_factory.mktemp("docs")
+    for name in ("mkdocs.yml", "CHANGELOG.md"):
+        shutil.copy(HOME / name, folder)
+    shutil.copytree(pages.DOCS, folder / "docs")
+    command = [zensical, "build", "--strict", "--clean"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    for page in (tmp_path / "site").rglob("*.html"):
+    return folder / "site"
+
+
+@pytest.mark.slow
+def test_the_site_needs_no_network(site: Path) -> None:
+    for page in site.rglob("*.html"):
         text = page.read_text(encoding="utf-8")
         assert not re.search(r"<(?:script|link|img|iframe)[^>]*(?:src|href)=\"?(?:https?:)?//", text), page
+
+
+@pytest.mark.slow
+def test_the_site_is_searched_from_a_disk(site: Path) -> None:
+    sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright")
+    from test_view_browser import CHROMIUM
+
+    if not CHROMIUM:
+        pytest.skip("needs Chromium on the PATH")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_page()
+        asked: list[str] = []
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto((site / "reference" / "names.html").as_uri())
+        page.keyboard.press("/")
+        page.keyboard.type("bracelet")
+        page.get_by_text("For a bracelet").wait_for(timeout=60_000)
+        assert all(url.startswith(("file:", "data:", "blob:", "about:")) for url in asked)
+        browser.close()
 
 
 @pytest.mark.parametrize(
