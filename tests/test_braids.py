@@ -97,7 +97,7 @@ def test_conjugates_are_proven(p: int, q: int) -> None:
         assert torus_type(mirrored(gauss)) == (p, -q)
 
 
-@pytest.mark.parametrize(("p", "q"), [(3, 4), (3, -5), (4, 5), (4, -8), (5, 7)])
+@pytest.mark.parametrize(("p", "q"), [(3, 4), (3, -5), (4, 5), (4, -8), (5, 6)])
 def test_near_misses(p: int, q: int) -> None:
     """A crossing is changed, a strand led elsewhere, a crossing is more or less, or on another side."""
     word, proven, others = delta(p, q), 0, 0

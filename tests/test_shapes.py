@@ -75,7 +75,7 @@ def test_mirror_images_and_names_in_any_case() -> None:
         again = starts.known(spelling)
         assert again
         assert np.array_equal(again[0], shape[0])
-    assert starts.known("8_22") is starts.known("m") is starts.known("T(2,59)") is None
+    assert starts.known("8_22") is starts.known("m") is starts.known("T(2,103)") is None
 
 
 @pytest.mark.slow
@@ -126,10 +126,10 @@ def test_the_shape_is_written(sono: Sono) -> None:
     assert result.stdout.startswith("# m8_18, the rope of the atlas\n")
     assert api.start("m8_18", known=True) == api.Curve(starts.known("m8_18") or [])
     assert result.stdout.count("\n") == 1 + len(api.start("m8_18", known=True)[0])
-    for wrong in (("T(2,59)",), ("8_18", "--variant", "1"), ("--braid", "1 1 1"), ("8_99",)):
+    for wrong in (("T(2,103)",), ("8_18", "--variant", "1"), ("--braid", "1 1 1"), ("8_99",)):
         refused = sono("start", *wrong, "--known")
         assert refused.exit_code == 2
-    assert "the atlas has no rope of 'T(2,59)'" in sono("start", "T(2,59)", "--known").stderr
+    assert "the atlas has no rope of 'T(2,103)'" in sono("start", "T(2,103)", "--known").stderr
     with pytest.raises(ValueError, match="the atlas has one rope"):
         api.start("8_18", 3, known=True)
 

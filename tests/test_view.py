@@ -184,9 +184,9 @@ def test_a_wrong_file_spoils_only_itself(sono: Sono, folder: Path) -> None:
 
 
 def test_no_page_without_a_curve(sono: Sono, folder: Path) -> None:
-    done = sono("view", "T(2,59)", "nosuch")
+    done = sono("view", "T(2,103)", "nosuch")
     assert done.exit_code == 1
-    assert "`sono tighten 'T(2,59)' -o rope.txt` makes one" in done.stderr
+    assert "`sono tighten 'T(2,103)' -o rope.txt` makes one" in done.stderr
     assert not list(folder.glob("*.html"))
 
 
@@ -213,7 +213,7 @@ def test_what_python_is_given() -> None:
     assert frame.startswith("<iframe")
     assert Tags(Tags(frame).tags[0][1]["srcdoc"] or "").data[0]["type"] == "3_1"
     with pytest.raises(ValueError, match="no rope"):
-        package.view("T(2,59)")
+        package.view("T(2,103)")
     with pytest.raises(ValueError, match="give a rope"):
         package.view()
     with pytest.raises(package.CurveError):

@@ -35,15 +35,18 @@ def torus_type(gauss: Gauss) -> tuple[int, int] | None:
     if braid is None or braid[0] == 1:
         return None
     p, word = braid
-    q, rest = divmod(sum(math.copysign(1, letter) for letter in word), p - 1)
-    return (p, int(q)) if q and not rest and _is_root(p, word, int(q)) else None
+    q, rest = divmod(sum(1 if letter > 0 else -1 for letter in word), p - 1)
+    if not q or rest or len(gauss[0]) != math.gcd(p, q):
+        return None
+    return (p, q) if _is_root(p, word, q) else None
 
 
 def braid_of(gauss: Gauss) -> Braid | None:
     """Return a braid whose closure has this diagram, if its Seifert circles share crossings as in a row.
 
     Two that share some meet them in one order, as they run side by side. So generators can be put in an order
-    in which all circles have them; their closure has the Gauss code that is given, and a link is known by it.
+    in which all circles have them. Their closure has the Gauss code that is given, and a link is known by it;
+    only where a circle has both neighbours on one side, the summands that they begin are turned over.
     """
     row = _row(list(_seifert_circles(gauss)))
     if row is None:
@@ -76,6 +79,8 @@ def _row(circles: list[list[int]]) -> list[list[int]] | None:
     for number, circle in enumerate(circles):
         for crossing in circle:
             owners.setdefault(crossing, set()).add(number)
+    if any(len(pair) == 1 for pair in owners.values()):
+        return None  # no diagram in a plane
     beside = [set[int]().union(*(owners[crossing] for crossing in circle)) for circle in circles]
     row = [number for number, near in enumerate(beside) if len(near) <= 2][:1]
     while row and (more := beside[row[-1]] - {*row}):

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from sono.curve import Components, Floats
+from sono.curve import Components, Floats, measure
 from sono.invariants.braids import torus_type
 from sono.invariants.crossings import TooEntangledError, crossings, diagram
 from sono.invariants.diagrams import Gauss, gauss_code, shortened
@@ -21,6 +21,10 @@ MOST_SEEN = 10_000
 
 ASIDE = 0.01 * np.array([0.31, 0.47, 0.83])
 """By how much a view is turned from the axis, along which symmetric ropes have vertices behind each other."""
+
+
+ROUNDING = 1e-12
+"""Thickness over the size of a curve, below which turning it might let strands pass."""
 
 
 def name(p: int, q: int) -> str:
@@ -44,6 +48,8 @@ def shown(curve: Components) -> Gauss:
     try:
         return shortened(gauss_code(diagram(curve)))
     except TooEntangledError:
+        if measure(curve).r_s < ROUNDING * abs(np.vstack(curve)).max():
+            raise
         seen = gauss_code(crossings(curve, _axis(curve), MOST_SEEN))
         if len(seen[1]) > MOST_SEEN:
             raise
