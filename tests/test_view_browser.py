@@ -220,6 +220,16 @@ def test_pointing_at_the_rope_marks_the_map(opened: Open) -> None:
     np.testing.assert_array_equal(seen.picture(), rope_before)
 
 
+def test_pointing_tells_vertices_between_rings_apart(opened: Open) -> None:
+    seen = opened(sono.tighten("3_1", 960))  # which has a ring for every third one
+    places = set()
+    for x in range(60, 300, 20):
+        seen.point_at("#rope", x, 220)
+        if seen.page.locator("#told").is_visible():
+            places.add(int(seen.text("#told tbody tr").split("\t")[0].split(":")[1]))
+    assert len({place % 3 for place in places}) == 3
+
+
 def test_pointing_at_the_map_marks_the_rope(opened: Open) -> None:
     seen = opened("3_1")
     before, rope = seen.picture(), sono.start("3_1", known=True)

@@ -4,7 +4,7 @@
 //! of one symmetric 3x3 matrix. Beads are ordered by approximate minimum degree, and the symbolic
 //! factorisation is reused as long as the pattern stands.
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
@@ -96,11 +96,8 @@ impl System {
         )
         .expect("memory for the symbolic factorisation");
         let (values, factor) = (vec![0.; matrix.row_idx().len()], vec![0.; symbolic.len_val()]);
-        let memory = MemBuffer::new(StackReq::any_of(&[
-            symbolic
-                .factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::<LltParams, f64>::default()),
-            symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
-        ]));
+        let spec = Spec::<LltParams, f64>::default();
+        let memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, spec));
         Self { column, diagonal, off_diagonal, matrix, values, symbolic, factor, memory }
     }
 
@@ -137,19 +134,30 @@ impl System {
     }
 
     /// Solves with the last factor.
-    pub fn solve(&mut self, rhs: &[DVec3]) -> Vec<DVec3> {
-        let n = rhs.len();
-        let mut permuted = vec![0.; 3 * n];
-        for (v, &p) in rhs.iter().zip(&self.column) {
-            permuted[3 * p..3 * p + 3].copy_from_slice(&v.to_array());
+    pub fn solve(&self, rhs: &[DVec3]) -> Vec<DVec3> {
+        self.solve_all(&[rhs]).remove(0)
+    }
+
+    /// Solves for several right-hand sides, which takes little more than for one.
+    pub fn solve_all(&self, rhs: &[impl AsRef<[DVec3]>]) -> Vec<Vec<DVec3>> {
+        let (rows, count) = (3 * self.column.len(), rhs.len());
+        let mut permuted = vec![0.; rows * count];
+        for (column, v) in permuted.chunks_exact_mut(rows).zip(rhs) {
+            for (v, &p) in v.as_ref().iter().zip(&self.column) {
+                column[3 * p..3 * p + 3].copy_from_slice(&v.to_array());
+            }
         }
+        let scratch = self.symbolic.solve_in_place_scratch::<f64>(count, Par::Seq);
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(&mut permuted, 3 * n, 1),
+            MatMut::from_column_major_slice_mut(&mut permuted, rows, count),
             Par::Seq,
-            MemStack::new(&mut self.memory),
+            MemStack::new(&mut MemBuffer::new(scratch)),
         );
-        self.column.iter().map(|&p| DVec3::from_slice(&permuted[3 * p..3 * p + 3])).collect()
+        let back = |column: &[f64]| {
+            self.column.iter().map(|&p| DVec3::from_slice(&column[3 * p..3 * p + 3])).collect()
+        };
+        permuted.chunks_exact(rows).map(back).collect()
     }
 }
 

@@ -1,6 +1,6 @@
 """A page that shows ropes in the round: one HTML file that needs nothing else, neither network nor library.
 
-Its WebGL2 is its own, in `data/view`: a rope needs rods and balls, and no more. That takes 47 kB, where an
+Its WebGL2 is its own, in `data/view`: a rope needs rods and balls, and no more. That takes 49 kB, where an
 offline page with three.js or k3d takes over a megabyte, and it can link the rope with its map of contacts.
 """
 

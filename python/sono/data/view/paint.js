@@ -119,6 +119,7 @@ class Painter {
     this.balls = this.program(...BALL);
     this.kept = {};
     gl.enable(gl.DEPTH_TEST);
+    gl.cullFace(gl.FRONT); // the insides of rods, whose outsides are clockwise
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
   }
 
@@ -172,7 +173,9 @@ class Painter {
     }
     if (!scene.beads || scene.thin) {
       const rope = this.onCard("rope", [curve, colours], () => laidOut(ropeRods(curve, colours)));
+      gl.enable(gl.CULL_FACE);
       this.pass(this.rods, this.round, rope, scene, scene.beads ? 0.4 * scene.radius : scene.radius);
+      gl.disable(gl.CULL_FACE);
     }
     if (scene.thin) {
       const contacts = this.onCard("contacts", [curve], () => laidOut(contactRods(curve)));
