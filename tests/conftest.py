@@ -12,6 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 import pytest
 from click.testing import CliRunner, Result
+from hypothesis import settings
 
 from sono import formats, starts
 from sono.cli import main
@@ -21,6 +22,9 @@ Sono: TypeAlias = Callable[..., Result]
 T = TypeVar("T")
 
 Spawn: TypeAlias = Callable[..., subprocess.Popen[str]]
+
+settings.register_profile("unhurried", settings(), deadline=None)  # no test is about speed
+settings.load_profile("unhurried")
 
 QUICK = ("--trials", "1", "--set", "anneal_sweeps=5000")
 """Options with which 60 beads of a trefoil are tight in a few hundredths of a second."""

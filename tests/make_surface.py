@@ -45,14 +45,15 @@ def commands() -> Iterator[str]:
 
 
 def parameter(param: click.Parameter) -> str:
-    """Write how it is called, and what it takes."""
+    """Write how it is called, what it takes, and what it is if it is not given."""
     spelling = "/".join(param.opts) if isinstance(param, click.Option) else param.make_metavar(CONTEXT)
     if isinstance(param, click.Option) and param.is_flag:
         return spelling
     takes = "|".join(param.type.choices) if isinstance(param.type, click.Choice) else param.type.name
-    return " ".join(
-        [spelling, f"<{takes}>", *["repeatable"] * param.multiple, *["required"] * param.required]
-    )
+    marks = ["repeatable"] * param.multiple + ["required"] * param.required
+    if isinstance(param.default, str | int | float) and not isinstance(param.default, bool):
+        marks.append(f"[{param.default}]")
+    return " ".join([spelling, f"<{takes}>", *marks])
 
 
 CONTEXT = click.Context(main)

@@ -82,7 +82,8 @@ def test_curves_go_in_as_arrays_lists_and_curves(make: Callable[[Any], Any]) -> 
 
 
 def test_names_go_in_too(tmp_path: Path) -> None:
-    assert sono.measure("3_1") == sono.measure(sono.start("3_1"))
+    for call in (sono.measure, sono.descriptors, sono.forces):
+        assert call("3_1") == call(sono.start("3_1", known=True))
     sono.write(tmp_path / "hopf.vect", "Hopf")
     assert sono.read(tmp_path / "hopf.vect") == sono.start("Hopf")
     assert "8_18" in sono.names()

@@ -27,6 +27,7 @@ def toml(name: str) -> dict[str, Any]:
 def test_the_version_is_one() -> None:
     version = toml("Cargo.toml")["package"]["version"]
     assert f"\nversion: {version}\n" in text("CITATION.cff")
+    assert f'"version": "{version}"' in text(".zenodo.json")
     assert re.search(
         rf"^## \[{re.escape(version)}\] - \d{{4}}-\d\d-\d\d$", text("CHANGELOG.md"), re.MULTILINE
     )

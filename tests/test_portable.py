@@ -1,15 +1,17 @@
 """What other systems than the one under test do: names of files, encodings, ends of lines."""
 
 import io
+import os
 import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 from conftest import QUICK, Sono
 
-from sono import starts
-from sono.cli import streams
+from sono import formats, starts
+from sono.cli import convert, streams
 from sono.jobs.sources import Source
 
 SPELLINGS = [
@@ -29,6 +31,21 @@ def test_files_of_knots_have_names_that_any_system_takes(folder: Path, name: str
 def test_other_knots_have_other_files(folder: Path) -> None:
     stems = [Source(name).stem for name in (*SPELLINGS, *starts.names())]
     assert len(set(stems)) == len(stems)
+
+
+def test_where_case_does_not_matter_no_rope_is_written_over_another(
+    folder: Path, sono: Sono, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = ["one/a.xyz", "two/A.xyz"]
+    for path in given:
+        (folder / path).parent.mkdir()
+        formats.write(folder / path, starts.start("3_1"))
+    monkeypatch.setattr(os.path, "normcase", str.lower)
+    result = sono("tighten", *given, "-n", "60", "-o", "out/", *QUICK)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "out/a.n60.txt would be written 2 times" in result.stderr
+    with pytest.raises(click.UsageError, match=r"a\.xyz would be written twice"):
+        convert._plan([Source(path) for path in given], "out/", "xyz")
 
 
 @pytest.mark.parametrize("mark", ["", "\ufeff"])

@@ -46,6 +46,18 @@ def bits(curve: VertexFile) -> list[bytes]:
     return [component.tobytes() for component in curve.components]
 
 
+TEXTS = [path for path in SAMPLES if path.suffix != ".gz" and b"\0" not in path.read_bytes()]
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"], ids=["", "BOM"])
+@pytest.mark.parametrize("end", [b"\n", b"\r\n"], ids=["LF", "CRLF"])
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.name))
+def test_it_is_the_same_as_windows_writes_it(path: Path, end: bytes, mark: bytes) -> None:
+    data = path.read_bytes().replace(b"\r\n", b"\n")
+    one, other = parsed(path, data), parsed(path, mark + data.replace(b"\n", end))
+    assert [(curve.key, bits(curve)) for curve in one] == [(curve.key, bits(curve)) for curve in other]
+
+
 @samples
 @pytest.mark.parametrize("format", sorted(set(formats.WRITERS) - ROUNDED))
 def test_it_goes_through_a_format(path: Path, format: str, tmp_path: Path) -> None:

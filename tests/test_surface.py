@@ -22,6 +22,7 @@ def test_no_line_is_there_twice() -> None:
         (click.Option(["-n", "--number"], type=int), "-n/--number <integer>"),
         (click.Option(["--way"], type=click.Choice(["a", "b"]), required=True), "--way <a|b> required"),
         (click.Option(["--all"], is_flag=True), "--all"),
+        (click.Option(["--gap"], default=0.5), "--gap <float> [0.5]"),
         (click.Option(["--set"], multiple=True), "--set <text> repeatable"),
     ],
 )

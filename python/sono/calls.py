@@ -118,7 +118,7 @@ def start(name: str, variant: int = 0, *, known: bool = False) -> Curve:
 
 
 def measure(vertices: Rope, /) -> Measures:
-    """Measure a curve at the scale it has.
+    """Measure a curve at the scale it has; a name stands for the atlas's rope of the knot.
 
     Raises `CurveError`, a `ValueError`, for one that is no embedded closed curve. Source: J. Baranska,
     P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots", section 2; for unequal edges L_c stays
@@ -128,31 +128,31 @@ def measure(vertices: Rope, /) -> Measures:
     >>> measure(square).n, round(measure(square).l_p, 6)
     (4, 8.0)
     """
-    return curve.measure(_components(vertices))
+    return curve.measure(rope_of(vertices))
 
 
 def descriptors(vertices: Rope, /) -> Descriptors:
     """Describe the shape of a curve: writhe, size, bends and contacts; see `Descriptors`.
 
-    All pairs of edges are summed: 2,000 vertices take a part of a second, 20,000 some seconds. Raises
-    `CurveError` for a curve that is not embedded.
+    A name stands for the atlas's rope of the knot. All pairs of edges are summed: 2,000 vertices take a part
+    of a second, 20,000 some seconds. Raises `CurveError` for a curve that is not embedded.
 
-    >>> found = descriptors(start("3_1", known=True))
+    >>> found = descriptors("3_1")
     >>> round(found.writhe, 1), round(found.acn, 1), found.total_curvature > 4 * math.pi
     (3.4, 4.3, True)
     """
-    return shape.descriptors(_components(vertices))
+    return shape.descriptors(rope_of(vertices))
 
 
 def forces(vertices: Rope, /) -> Forces:
     """Find the forces that come nearest to balance on a curve, scaled to R_s = 1; see `Forces`.
 
-    Raises `CurveError` for a curve that is not embedded.
+    A name stands for the atlas's rope of the knot. Raises `CurveError` for a curve that is not embedded.
 
     >>> forces(tighten("3_1", 60)).residual < 1e-6
     True
     """
-    return curve.forces(_components(vertices))
+    return curve.forces(rope_of(vertices))
 
 
 def identify(vertices: Rope, /) -> Identity:

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -69,13 +70,11 @@ def _plan(sources: "list[Source]", output: str, format: str) -> "dict[str, list[
             raise click.UsageError(f"IN holds {len(sources)} curves, {output} one; {cure}")
         return {output: sources}
     suffix = next(suffix for suffix, known in formats.SUFFIXES.items() if suffix and known == format)
-    plan: dict[str, list[Source]] = {}
-    for source in sources:
-        plan.setdefault(os.path.join(output, source.stem + suffix), []).append(source)
-    if double := next((path for path, parts in plan.items() if len(parts) > 1), None):
-        raise click.UsageError(
-            f"{double} would be written twice; convert those curves one by one, as FILE:KEY"
-        )
+    plan = {os.path.join(output, source.stem + suffix): [source] for source in sources}
+    names = Counter(os.path.normcase(source.stem + suffix) for source in sources)
+    if double := next((name for name, times in names.items() if times > 1), None):
+        cure = "convert those curves one by one, as FILE:KEY"
+        raise click.UsageError(f"{os.path.join(output, double)} would be written twice; {cure}")
     places.make_folder(output)
     return plan
 

@@ -39,7 +39,7 @@ def prepare(paths: Sequence[str], fresh: bool, more: Iterable[str] = ()) -> None
 
     If `fresh`, a file that is there is an error. `more` are names that may be written besides.
     """
-    for path, times in Counter(paths).items():
+    for path, times in Counter(map(os.path.normcase, paths)).items():
         if times > 1:
             raise click.UsageError(f"{path} would be written {times} times; give each knot once, by one name")
     try:
