@@ -1,7 +1,7 @@
 //! The matrix of a Newton step: 3x3 blocks bordered by the edge lengths, which are few and therefore
 //! eliminated last.
 
-use faer::linalg::solvers::Solve;
+use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -21,6 +21,11 @@ pub struct Matrix {
     /// Made anew from the pairs after a restart.
     #[serde(skip)]
     system: Option<System>,
+    /// The solutions for the border's columns, and what they leave to the edge lengths.
+    #[serde(skip)]
+    columns: Vec<Vec<DVec3>>,
+    #[serde(skip)]
+    schur: Option<Llt<f64>>,
 }
 
 /// The numbers of a matrix: its blocks, and the rows and the corner of the edge lengths.
@@ -97,17 +102,24 @@ impl Matrix {
         if !system.factor(&matrix.blocks, shift) {
             return None;
         }
-        let columns: Vec<_> = matrix.border.iter().map(|column| system.solve(column)).collect();
-        let mut beads = system.solve(&rhs.beads);
+        self.columns = matrix.border.iter().map(|column| system.solve(column)).collect();
         let k = corner.len();
         let schur = Mat::from_fn(k, k, |i, j| {
             (if i == j { matrix.corner[i] + corner[i] } else { 0. })
-                - dot(&matrix.border[i], &columns[j])
+                - dot(&matrix.border[i], &self.columns[j])
         });
+        self.schur = Some(schur.llt(Side::Lower).ok()?);
+        self.solve_again(matrix, rhs)
+    }
+
+    /// Solves with the last factor.
+    pub fn solve_again(&mut self, matrix: &Bordered, rhs: &Direction) -> Option<Direction> {
+        let mut beads = self.system.as_mut()?.solve(&rhs.beads);
+        let k = rhs.lengths.len();
         let rest = Mat::from_fn(k, 1, |i, _| rhs.lengths[i] - dot(&matrix.border[i], &beads));
-        let solved = schur.llt(Side::Lower).ok()?.solve(rest);
+        let solved = self.schur.as_ref()?.solve(rest);
         let lengths: Vec<_> = (0..k).map(|i| solved[(i, 0)]).collect();
-        for (column, length) in columns.iter().zip(&lengths) {
+        for (column, length) in self.columns.iter().zip(&lengths) {
             beads.iter_mut().zip(column).for_each(|(d, column)| *d -= length * *column);
         }
         Some(Direction { beads, lengths })
