@@ -38,11 +38,14 @@ struct Way {
 }
 
 impl Polish {
-    /// Goes as far along a step as possible, straight or on its arc, whichever lowers the barrier function
-    /// more; returns whether that is anywhere.
+    /// Goes as far along a step as possible, on its arc where that lowers the barrier function more than a
+    /// part of the straight way; returns whether that is anywhere.
     pub(super) fn take(&mut self, step: &Step, around: &Surroundings) -> bool {
-        let ways = [false, true].map(|on_arc| self.search(step, on_arc, around));
-        let lowest = ways.into_iter().flatten().min_by(|a, b| a.merit.total_cmp(&b.merit));
+        let straight = self.search(step, false, around);
+        let is_whole = straight.as_ref().is_some_and(|way| way.a == 1.);
+        let on_arc = if is_whole { None } else { self.search(step, true, around) };
+        let ways = [straight, on_arc].into_iter().flatten();
+        let lowest = ways.min_by(|a, b| a.merit.total_cmp(&b.merit));
         let Some(Way { a, on_arc, to, rope, margin, .. }) = lowest else {
             return false;
         };
