@@ -251,7 +251,7 @@ def search(
     second by each of them; what it raises ends the search and passes through.
 
     >>> best, *others = search("3_1", trials=2)
-    >>> best.tight, round(best.length, 3)
+    >>> best.converged, round(best.length, 3)
     (True, 32.743)
     """
     trials, minima = whole("trials", trials, 1), whole("minima", minima, 1)
