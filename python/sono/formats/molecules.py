@@ -241,7 +241,8 @@ class _Trace:
         if self._wrong:
             raise self._wrong
         self._refuse_breaks()
-        return Chain(self._rows, [atom.line for atom in self.atoms], self.closed)
+        closed = None if self.closed and not (self._bonded or self._called) else self.closed
+        return Chain(self._rows, [atom.line for atom in self.atoms], closed)
 
     def notes(self) -> list[str]:
         """Tell which atoms were taken, why the chain is closed, and which may be missing."""
