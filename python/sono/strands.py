@@ -18,6 +18,12 @@ def edges(chain: Floats, closed: bool) -> tuple[Floats, Floats]:
     return (chain, ends) if closed else (chain[:-1], ends[:-1])
 
 
+def length(chains: Sequence[Floats], closed: Sequence[bool]) -> float:
+    """Return the length of all edges of chains."""
+    pairs = (edges(chain, ring) for chain, ring in zip(chains, closed, strict=True))
+    return float(sum(np.linalg.norm(end - start, axis=1).sum() for start, end in pairs))
+
+
 def writhe(chains: Sequence[Floats], closed: Sequence[bool]) -> tuple[float, float, float]:
     """Return the mean over all directions of the signs of crossings that are seen, and of their number.
 
@@ -39,7 +45,7 @@ def writhe(chains: Sequence[Floats], closed: Sequence[bool]) -> tuple[float, flo
 
 @np.errstate(divide="ignore", invalid="ignore")
 def _seen(start: Floats, end: Floats, starts: Floats, ends: Floats) -> Floats:
-    """Return the shares (m,) of directions in which an edge crosses others (m, 3), with the crossings' signs."""
+    """Return the shares (m,) of directions in which an edge crosses others (m, 3), signed as it does."""
     corners = [starts - start, ends - start, ends - end, starts - end]
     normals = [np.cross(one, other) for one, other in zip(corners, [*corners[1:], corners[0]], strict=True)]
     units = [normal / np.linalg.norm(normal, axis=1)[:, None] for normal in normals]

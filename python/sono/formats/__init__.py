@@ -40,7 +40,7 @@ from sono.formats import (
     vect,
     xyz,
 )
-from sono.formats.closing import Close
+from sono.formats.closing import Close, Ends
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
 
@@ -50,6 +50,7 @@ __all__ = [
     "SUFFIXES",
     "WRITERS",
     "Close",
+    "Ends",
     "FormatError",
     "Raw",
     "VertexFile",
@@ -170,7 +171,7 @@ LOOSE = {PLAIN, "xyz", "csv"}
 """The formats whose suffixes say little of what is in a file: plain rows are called .xyz and .csv as well."""
 
 
-def read(source: str | os.PathLike[str], close: Close | None = None) -> VertexFile:
+def read(source: str | os.PathLike[str], close: Ends | None = None) -> VertexFile:
     """Read a curve of one or more components from a file, or from standard input when `source` is "-".
 
     Of a file that holds several curves, "FILE:KEY" reads one. Every component has at least three vertices,

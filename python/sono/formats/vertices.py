@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.closing import Close, closing
+from sono.formats.closing import WAYS, Ends, closing
 from sono.formats.doubts import closing_edge, ends_apart, jumps
 
 REPEATED = 1e-4
@@ -100,13 +100,16 @@ class VertexFile:
             f"{self.where(component, -1)}: the edge that closes the curve, from here back to line "
             f"{self.lines[component][0]}, is {far:.0f} times the mean edge; if this chain is open, its knot "
             "is what this edge makes of it: --close sphere closes it round the outside"
-            for component, vertices in enumerate(self.components)
-            if (far := closing_edge(vertices))
+            for component, (vertices, ring) in enumerate(zip(self.components, self.rings, strict=True))
+            if ring and (far := closing_edge(vertices))
         ]
 
     @classmethod
-    def checked(cls, name: str, raw: Raw, close: Close | None = None) -> "VertexFile":
-        """Check a curve that was read, and close its open chains as asked. Raises `FormatError`."""
+    def checked(cls, name: str, raw: Raw, close: Ends | None = None) -> "VertexFile":
+        """Check a curve that was read, and close its open chains as asked. Raises `FormatError`.
+
+        If they are left open, their `own` vertices are all.
+        """
         strands = [_Strand.of(name, chain) for chain in raw.chains]
         _refuse_jumps(name, strands)
         pairs = [strand.closed(close) for strand in strands]
@@ -157,12 +160,13 @@ class _Strand:
         _refuse_twins(name, vertices, lines)
         return cls(name, vertices, lines, is_open, far or (ends and ends_apart(vertices)), ends)
 
-    def closed(self, close: Close | None) -> "tuple[_Strand, str | None]":
+    def closed(self, close: Ends | None) -> "tuple[_Strand, str | None]":
         """Close a chain that is open, or may be, as asked, and tell. Raises `FormatError`."""
         first, last = self.lines[[0, -1]]
-        if not self.is_open and not (close and self.may_be):
+        asked = close in WAYS
+        if not self.is_open and not (asked and self.may_be):
             ring = f"{self.name}:{last}: the chain that ends here is a ring, as line {first} is a bond away"
-            return self, f"{ring}: --close leaves it alone" if close and self.ends else None
+            return self, f"{ring}: --close leaves it alone" if asked and self.ends else None
         if close is None:
             raise FormatError.at(
                 self.name,
@@ -170,7 +174,10 @@ class _Strand:
                 f"the chain is open: it ends here and began on line {first}; --close direct joins its ends "
                 "by an edge, --close sphere by way of a sphere round it",
             )
-        added, own = closing(self.vertices, close), len(self.vertices)
+        own = len(self.vertices)
+        if close == "open":
+            return replace(self, own=own), None
+        added = closing(self.vertices, close)
         lines = np.concatenate([self.lines, np.full(len(added), last)])
         way = "a sphere round it" if close == "sphere" else "the straight way"
         note = (
