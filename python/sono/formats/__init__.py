@@ -205,8 +205,9 @@ def raws(source: str | os.PathLike[str]) -> tuple[str, Sequence[Raw]]:
     found = found[0].parts or found
     if chosen := [raw for raw in found if raw.key == key]:
         return name, chosen
-    keys = _listed(found) or "no others"
-    raise FormatError(f"{name}: holds no curve {shown(key)}; there are: {keys}")
+    keys = _listed([raw for raw in found if raw.key])
+    cure = f"there are: {keys}" if keys else "it holds one, which has none: give the file without a key"
+    raise FormatError(f"{name}: holds no curve {shown(key)}; {cure}")
 
 
 def _listed(curves: Sequence[Raw]) -> str:

@@ -62,6 +62,11 @@ class Raw:
     parts: Sequence["Raw"] = ()
 
 
+def alone(raw: Raw, *keys: str) -> list[Raw]:
+    """Give the only curve of a file, which needs no key, and has those that it would have beside others."""
+    return [replace(raw, key="", parts=[replace(raw, key=key) for key in dict.fromkeys(keys) if key])]
+
+
 @dataclass(frozen=True, eq=False)
 class VertexFile:
     """A curve as read: `components`, each (n_i, 3) in the file's unit, and the `lines`, each (n_i,).
