@@ -42,6 +42,7 @@ from sono.formats import (
 )
 from sono.formats.closing import Close, Ends
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
+from sono.formats.refused import refuse_trajectory
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
 
 __all__ = [
@@ -234,6 +235,7 @@ def may_hold_several(path: str) -> bool:
 
 def _format_of(name: str, data: bytes) -> str:
     """Tell which format a file of this name has that begins like this. Raises `FormatError`."""
+    refuse_trajectory(name, _suffix(name), data)
     if binary := next((key for key, reader in BINARY.items() if data.startswith(reader.MAGIC)), None):
         return binary
     own = SUFFIXES.get(_suffix(name), PLAIN)
