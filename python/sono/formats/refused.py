@@ -1,4 +1,4 @@
-"""What cannot be read: curves of a file beside others, where one spoils nothing but itself, and trajectories."""
+"""What cannot be read: curves beside others, where one spoils nothing but itself, and trajectories."""
 
 from collections.abc import Callable, Sequence
 from typing import NoReturn
@@ -22,8 +22,8 @@ def refuse_trajectory(name: str, suffix: str, data: bytes) -> None:
     """Refuse a binary trajectory, by its name or by what it begins with. Raises `FormatError`."""
     if suffix in TRAJECTORIES or data.startswith(MAGIC):
         raise FormatError(
-            f"{name}: binary trajectories, XTC, TRR and DCD, are not read; write frames that are: "
-            f"`gmx trjconv -f {name} -s topol.tpr -pbc whole -o frames.gro`, or .xyz by MDAnalysis, mdtraj or VMD"
+            f"{name}: XTC, TRR and DCD are not read; write frames that are: "
+            f"`gmx trjconv -f {name} -s topol.tpr -pbc whole -o frames.gro`, or .xyz by MDAnalysis or VMD"
         )
 
 

@@ -129,8 +129,8 @@ class VertexFile:
 class _Strand:
     """One component (n, 3) of a file: its first vertex is not repeated, every edge has a length.
 
-    It `is_open`, or `may_be` if the user closes chains, or its `ends` are all that tells. If it has been
-    closed, the first `own` vertices are those of the file.
+    It `is_open`, or `may_be` if the user closes chains; its `ends` may be all that tells, in a format of a
+    `chain` of atoms or in one of plain rows. Once it is closed, its first `own` vertices are the file's.
     """
 
     name: str
@@ -139,6 +139,7 @@ class _Strand:
     is_open: bool
     may_be: bool
     ends: bool
+    chain: bool
     own: int | None = None
 
     @classmethod
@@ -163,13 +164,14 @@ class _Strand:
         is_open = not meet and (far if chain.closed is None else not chain.closed)
         ends = not meet and (chain.closed is None or not chain.said)
         _refuse_twins(name, vertices, lines)
-        return cls(name, vertices, lines, is_open, far or (ends and ends_apart(vertices)), ends)
+        may_be = far or (ends and ends_apart(vertices))
+        return cls(name, vertices, lines, is_open, may_be, ends, chain.closed is None)
 
     def closed(self, close: Ends | None) -> "tuple[_Strand, str | None]":
         """Close a chain that is open, or may be, as asked, and tell. Raises `FormatError`."""
         first, last = self.lines[[0, -1]]
         asked = close in WAYS
-        if not self.is_open and not (asked and self.may_be):
+        if not self.is_open and not (self.may_be and (asked or (close and self.chain))):
             ring = f"{self.name}:{last}: the chain that ends here is a ring, as line {first} is a bond away"
             return self, f"{ring}: --close leaves it alone" if asked and self.ends else None
         if close is None:
