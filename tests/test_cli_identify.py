@@ -9,6 +9,7 @@ from conftest import Sono
 
 import sono as package
 from sono import formats, starts
+from sono.cli import options
 
 
 @pytest.fixture

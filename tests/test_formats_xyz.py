@@ -208,7 +208,9 @@ def test_a_chain_that_is_not_wrapped_stays(size: float) -> None:
 
 @pytest.mark.parametrize(("sides", "unclear"), [(1.3, True), (3, False)])
 def test_components_are_unwrapped_and_told_where_images_are_unclear(sides: float, unclear: bool) -> None:
-    content = boxed(np.vstack([KNOT, KNOT + [5, 5, 1]]), np.eye(3) * sides * np.ptp(KNOT, axis=0).max())
+    content = boxed(
+        np.vstack([KNOT, KNOT + 0.4 * np.ptp(KNOT, axis=0)]), np.eye(3) * sides * np.ptp(KNOT, axis=0).max()
+    )
     head, comment, *rows = content.splitlines()
     rows = [f"{row} {1 + i // len(KNOT)}" for i, row in enumerate(rows)]
     (curve,) = parsed("\n".join([head, comment.replace("pos:R:3", "pos:R:3:molecule:I:1"), *rows]))
