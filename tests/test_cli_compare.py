@@ -35,7 +35,8 @@ def test_the_differences_have_their_signs(folder: Path, sono: Sono) -> None:
 def test_a_name_of_nothing_published(sono: Sono) -> None:
     result = sono("compare", "-", "--columns", "published,kind", input="knot\tL_a\nT(7,3)\t80\nmine\t1.5\n")
     assert result.stdout == "published\tkind\n-\t-\n-\t-\n"
-    assert result.stderr == "sono: of 2 rows no ropelength is published under the name they have\n"
+    assert result.stderr.startswith("sono: of 2 rows no ropelength is published under the name they have: ")
+    assert "call a file like its knot, 3_1.txt" in result.stderr
 
 
 @pytest.mark.parametrize(

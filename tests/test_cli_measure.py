@@ -10,19 +10,21 @@ from conftest import Sono, Spawn
 
 import sono as package
 from sono import formats, tables
+from sono.cli import options
 
 ROWS = "0 0 0\n2 0 0\n2 2 1\n0 2 0\n"
 
 
 def test_a_row_is_what_the_library_measures(folder: Path, sono: Sono) -> None:
     result = sono(
-        "measure", "3_1.txt", "Hopf.txt", "--format", "jsonl", "--columns", ",".join(tables.COLUMNS)
+        *("measure", "3_1.txt", "Hopf.txt", "--format", "jsonl"),
+        *("--columns", ",".join(options.FILLED["measure"])),
     )
     assert (result.exit_code, result.stderr) == (0, "")
     for name, line in zip(["3_1", "Hopf"], result.stdout.splitlines(), strict=True):
         row = json.loads(line)
         assert (row["knot"], row["file"]) == (name, f"{name}.txt")
-        assert row["status"] is row["sweeps"] is None
+        assert None not in row.values()
         measures = package.measure(formats.read(folder / f"{name}.txt").components)
         for key in ("n", "components", "dl", "l_p", "l_c", "l_a", "r_s", "min_rad", "length"):
             assert row[key] == getattr(measures, key)

@@ -51,7 +51,7 @@ def test_tsv_and_csv_keep_every_digit() -> None:
     assert table("csv", TREFOIL, FAILED) == (
         "knot,n,dl,l_p,l_c,l_a\n"
         "3_1,120,0.2724306812345678,32.69168123456789,32.94095,32.741534\n"
-        "a|b & 100% ,60,-,-,-,-\n"
+        "a|b & 100% ,60,,,,\n"
     )
 
 

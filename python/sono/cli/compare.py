@@ -116,5 +116,8 @@ def _summary(rows: list[Row]) -> Iterator[str]:
         why = "edges too coarse to tell which is shorter: the error of the limit exceeds the difference"
         yield f"{len(coarse)} rows have {why}: {published.listed(coarse)}"
     if len(rows) > len(known):
-        yield f"of {len(rows) - len(known)} rows no ropelength is published under the name they have"
+        unnamed = published.listed([str(row["knot"]) for row in rows if row["published"] is None])
+        cure = 'call a file like its knot, 3_1.txt, or compare in Python, sono.compare(rope, "3_1")'
+        why = "no ropelength is published under the name they have"
+        yield f"of {len(rows) - len(known)} rows {why}: {unnamed}; {cure}"
     yield from published.claims(rows)

@@ -1,31 +1,61 @@
 """What commands share that do something with each curve of files, one after the other."""
 
+import re
 import shlex
-from collections.abc import Callable, Sequence
-from itertools import chain
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from sono.cli.streams import complain
 
 if TYPE_CHECKING:
-    from sono.formats import Close, VertexFile
+    from sono.formats import Ends, VertexFile
     from sono.jobs.sources import Source
 
 
-def each(given: Sequence[str], close: "Close | None", work: "Callable[[Source], None]") -> int:
-    """Work on each curve of the files given; a wrong one spoils only itself. Return the exit code."""
+_NUMBER = re.compile(r"\d+(\.\d+)?")
+"""What differs in messages that say the same of several curves."""
+
+
+def each(
+    given: Sequence[str],
+    close: "Ends | None",
+    work: "Callable[[Source], Sequence[str] | None]",
+    tell: Callable[[str], None] = complain,
+) -> int:
+    """Work on each curve of the files given; a wrong one spoils only itself. Return the exit code.
+
+    What the work says of several curves of a file the user is told once.
+    """
     # Imported here, since numpy would make --help wait.
     from sono.formats import FormatError
     from sono.jobs.sources import curves
 
     failed = False
-    for source in chain.from_iterable(curves(one, close) for one in given):
-        try:
-            work(source)
-        except FormatError as error:
-            failed = True
-            complain(str(error))
+    for one in given:
+        heard: list[Sequence[str]] = []
+        for source in curves(one, close):
+            try:
+                heard.append(work(source) or ())
+            except FormatError as error:
+                failed = True
+                complain(str(error))
+        for message in _once(heard):
+            tell(message)
     return int(failed)
+
+
+def _once(heard: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Give what is said of the curves of a file, what is said of several in one message."""
+    if len(heard) == 1:
+        yield from heard[0]
+        return
+    kinds: dict[str, list[str]] = {}
+    for messages in heard:
+        for kind, message in {_NUMBER.sub("", message): message for message in reversed(messages)}.items():
+            kinds.setdefault(kind, []).append(message)
+    for said in kinds.values():
+        count = f"all {len(heard)}" if len(said) == len(heard) else f"{len(said)} of {len(heard)}"
+        yield f"{said[0]} (in {count} curves of the file)" if len(said) > 1 else said[0]
 
 
 def file_of(source: "Source", command: str, does: str) -> "VertexFile":

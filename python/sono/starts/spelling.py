@@ -142,6 +142,8 @@ def _series(name: str, names: Sequence[str], m: str) -> str | None:
 
 def _near(name: str, names: Sequence[str], m: str) -> str:
     """Return the name with the same numbers that is spelled nearest, or else what names there are."""
+    if name[:1].isdigit():  # a letter there may have been read for a number
+        name = name.translate(str.maketrans("lIoO", "1100"))
     digits = re.sub(r"\D", "", name)
     alike = {known.casefold(): known for known in (*names, *_WORDS) if re.sub(r"\D", "", known) == digits}
     near = difflib.get_close_matches(name.casefold(), alike, n=1, cutoff=0.6 if digits else 0.8)
