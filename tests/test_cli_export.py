@@ -17,6 +17,7 @@ import sono as package
 from sono import formats
 from sono.curve import Components, Floats
 from sono.figures import solids
+from sono.figures.lengths import Lengths
 from sono.figures.solidfiles import FORMATS
 from sono.figures.tube import sides_within
 
@@ -152,7 +153,7 @@ def coarse(name: str, n: int) -> Components:
     ids=["tight", "no gap", "link", "loose", "n=15", "n=7", "huge"],
 )
 def test_strands_keep_the_gap(curve: Components, gap: float) -> None:
-    made = solids.solid(curve, 2.0, gap, 0.1)
+    made = solids.solid(curve, Lengths(2.0, gap=gap, tolerance=0.1))
     assert made.radius == pytest.approx(1 - gap / 2)
     sides = sides_within(made.radius, 0.1)
     line = [mesh.vertices.reshape(-1, sides, 3).mean(axis=1) for mesh in made.components]
@@ -183,7 +184,7 @@ def crossed(one: Floats, other: Floats) -> bool:
     "curve", [list(package.start("Hopf", known=True)), coarse("3_1", 12)], ids=["Hopf", "12"]
 )
 def test_no_triangle_meets_another(curve: Components) -> None:
-    made = solids.solid(curve, 2.0, 0.0, 0.05)
+    made = solids.solid(curve, Lengths(2.0, gap=0, tolerance=0.05))
     triangles = np.concatenate([mesh.vertices[mesh.faces] for mesh in made.components])
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     for i, one in enumerate(triangles):
@@ -207,9 +208,72 @@ def test_the_scale_is_that_of_the_rope(folder: Path, sono: Sono) -> None:
     assert np.allclose(bodies("d.ply")[0].extents + 0.4, sizes[0], atol=0.02)
 
 
+def about(vector: Floats) -> Floats:
+    """Return a rotation of space that lays the x axis along a vector."""
+    turn = np.linalg.qr(np.column_stack([vector, np.eye(3)]))[0]
+    return np.asarray(turn * [np.linalg.det(turn), 1, 1])
+
+
+@pytest.mark.parametrize("name", ["3_1", "4_1", "8_18", "Borromean", "T(2,7)", "T(3,5)"])
+@pytest.mark.parametrize("lies", [[1.0, 0, 0], [0.3, -0.5, 0.8], [-0.2, 0.9, 0.1]])
+def test_a_rope_is_laid_flat_however_its_file_has_it(name: str, lies: list[float]) -> None:
+    rope = [part @ about(np.array(lies)) for part in package.start(name, known=True)]
+    made = solids.solid(rope, Lengths(gap=0, tolerance=0.1))
+    x, y, z = made.size
+    assert x > y - 0.05 > z - 0.1
+    points = np.concatenate([mesh.vertices for mesh in made.components])
+    assert (points.min(axis=0) == 0).all()
+    random = np.random.default_rng(3)
+    for _ in range(500):
+        box = np.ptp(points @ about(random.normal(size=3)) @ about(random.normal(size=3)), axis=0)
+        assert np.prod(box) > 0.99 * x * y * z
+    assert (
+        package.identify(
+            [mesh.vertices.reshape(-1, sides_within(3, 0.1), 3).mean(axis=1) for mesh in made.components]
+        ).names
+        == package.identify(rope).names
+    )
+
+
+def test_a_flat_trefoil_is_less_high_than_two_ropes() -> None:
+    x, y, z = solids.solid(list(package.start("3_1", known=True)), Lengths()).size
+    assert z < 12.2
+    assert x == pytest.approx(23.4, abs=0.2)
+    assert y == pytest.approx(22.4, abs=0.2)
+
+
+@pytest.mark.parametrize("gap", [0, 0.4, 3.0])
+@pytest.mark.parametrize(("name", "size"), [("3_1", 80), ("8_18", 30), ("Borromean", 25), ("T(2,11)", 200)])
+def test_the_longest_side_is_the_size(name: str, size: float, gap: float) -> None:
+    made = solids.solid(list(package.start(name, known=True)), Lengths(size=size, gap=gap, tolerance=0.05))
+    assert size - 0.1 < max(made.size) < size + 1e-9
+    assert made.diameter == pytest.approx(2 * made.radius + gap)
+    same = solids.solid(
+        list(package.start(name, known=True)), Lengths(made.diameter, gap=gap, tolerance=0.05)
+    )
+    assert same.size == pytest.approx(made.size, abs=0.2)
+
+
+def test_the_size_of_any_curve(folder: Path, sono: Sono) -> None:
+    package.write("loose.txt", [30 * part for part in package.start("4_1")])
+    for source in ("loose.txt", "7_4", "Whitehead"):
+        result = sono("export", source, "-o", "k.3mf", "--size", "2.5in", "--force", "--tolerance", "0.1mm")
+        assert "k.3mf: 63.5 x " in result.stderr or "k.3mf: 63.4 x " in result.stderr
+
+
+@pytest.mark.parametrize(
+    "lengths", [{"rope_diameter": "6mm"}, {"size": "80"}, {"gap": None}, {"tolerance": [1]}, {"size": True}]
+)
+def test_what_is_no_number_of_millimetres(lengths: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="give a number of millimetres, such as 6"):
+        package.export("k.3mf", "3_1", **lengths)
+    with pytest.raises(ValueError, match="both; give one"):
+        package.export("k.3mf", "3_1", rope_diameter=6, size=80)
+
+
 def test_inches_are_told_from_millimetres(sono: Sono) -> None:
     result = sono("export", "3_1", "-o", "k.stl", "--rope-diameter", "0.5 in", "--gap", "0.05in")
-    assert "mm of rope 11.4 mm thick" in result.stderr
+    assert "mm of rope 12.7 mm thick, printed 11.4 mm thick" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -229,6 +293,12 @@ def test_inches_are_told_from_millimetres(sono: Sono) -> None:
         (["-o", "k.stl", "--rope-diameter", "9e999"], "the rope's diameter is inf mm"),
         (["-o", "k.stl", "--tolerance", "0"], "the tolerance is 0 mm; give one above 0"),
         (["-o", "k.stl", "--gap", "6mm"], "a gap of 6 mm leaves nothing of a rope of 6 mm"),
+        (["-o", "k.stl", "--size", "0"], "the size is 0 mm; give one above 0"),
+        (
+            ["-o", "k.stl", "--size", "9", "--rope-diameter", "6"],
+            "--rope-diameter and --size both tell the scale",
+        ),
+        (["-o", "k.stl", "--size", "9", "--gap", "1e999"], "the gap is inf mm; give 0 or more"),
         (["4_1", "-o", "k.stl"], "k.stl is one file; name a folder, k.stl/, for 2 ropes"),
         ([], "Missing option '-o'"),
     ],

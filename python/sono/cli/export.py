@@ -5,7 +5,7 @@ import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,6 +14,7 @@ from sono.cli.each import each, rope_of
 from sono.cli.options import Function
 
 if TYPE_CHECKING:
+    from sono.figures.lengths import Lengths
     from sono.figures.solids import Solid
     from sono.formats import Close
     from sono.jobs.sources import Source
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
 UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
 
 
-def _length(ctx: click.Context, param: click.Parameter, value: str) -> float:
+def _length(ctx: click.Context, param: click.Parameter, value: str | None) -> float | None:
     """Return a length in millimetres."""
+    if value is None:
+        return None
     found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?) *([a-z]*)", value.strip().lower())
     try:
         number, unit = found.groups() if found else ("", "")
@@ -31,7 +34,7 @@ def _length(ctx: click.Context, param: click.Parameter, value: str) -> float:
         raise click.BadParameter(f"{value!r} is no length; give one such as 6mm, 0.6cm or 0.25in") from None
 
 
-def length(name: str, variable: str, default: str, help: str) -> Callable[[Function], Function]:
+def length(name: str, variable: str, default: str | None, help: str) -> Callable[[Function], Function]:
     """Return an option that is a length, in millimetres."""
     return click.option(
         name, variable, metavar="LENGTH", default=default, show_default=True, callback=_length, help=help
@@ -49,7 +52,13 @@ def length(name: str, variable: str, default: str, help: str) -> Callable[[Funct
     metavar="FORMAT",
     help="stl, obj, ply, glb or 3mf.  [default: by the suffix, or stl]",
 )
-@length("--rope-diameter", "diameter", "6mm", "Scale of the print: strands of such a rope touch.")
+@length(
+    "--rope-diameter",
+    "diameter",
+    None,
+    "Scale of the print: strands of such a rope touch.  [default: 6mm]",
+)
+@length("--size", "size", None, "Scale by the longest side of the print instead.")
 @length("--gap", "gap", "0.4mm", "Between strands, which are printed thinner by it.")
 @length("--tolerance", "tolerance", "0.02mm", "How far facets may be off the round tube.")
 @options.close
@@ -62,7 +71,7 @@ def command(
     close: "Close | None",
     force: bool,
     quiet: bool,
-    **lengths: float,
+    **lengths: float | None,
 ) -> None:
     """Write ropes as closed tubes for a 3D printer: .stl, .obj, .ply, .glb or .3mf, in millimetres.
 
@@ -70,15 +79,17 @@ def command(
     Lengths are in mm, or as their unit says: 6mm, 0.6cm, 0.25in.
 
     The rope is laid along the curve's inscribed knot, scaled so that strands of the rope's diameter just
-    touch. They are printed thinner by the gap, which they keep everywhere, so that they do not fuse. The
-    components of a link are bodies of their own, but for .stl and .ply, which have one; .glb and .3mf have
-    their colours, too. All but .3mf needs the extra sono[mesh].
+    touch, or so that the print is of a size. What is printed is thinner than the rope by the gap, which
+    strands keep everywhere, so that they do not fuse. It lies flat. The components of a link are bodies of
+    their own, but for .stl and .ply, which have one; .glb and .3mf have their colours, too. All but .3mf
+    needs the extra sono[mesh].
 
     \b
       sono export 4_1 -o figure8.stl --rope-diameter 6mm
+      sono export 3_1 -o trefoil.3mf --size 80mm
       sono export 6^3_2 tight.txt -o prints/ --format 3mf --gap 0.5mm
     """
-    maker = _Maker(output, _format(output, format_), _checked(**lengths), force)
+    maker = _Maker(output, _format(output, format_), _checked(lengths), force)
 
     def export(source: "Source") -> None:
         path, solid = maker.written(source)
@@ -106,22 +117,23 @@ def _format(output: str, named: str | None) -> str:
         raise click.UsageError(str(error)) from error
 
 
-def _checked(diameter: float, gap: float, tolerance: float) -> tuple[float, float, float]:
+def _checked(lengths: dict[str, Any]) -> "Lengths":
     """Refuse lengths that make no rope."""
-    from sono.figures.solids import check
+    from sono.figures.lengths import Lengths
 
+    if lengths["diameter"] is not None and lengths["size"] is not None:
+        raise click.UsageError("--rope-diameter and --size both tell the scale; give one of them")
     try:
-        check(diameter, gap, tolerance)
+        return Lengths(**lengths)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    return diameter, gap, tolerance
 
 
 def _told(solid: "Solid") -> str:
     """Say what is printed."""
     size = " x ".join(f"{edge:.1f}" for edge in solid.size)
-    rope = f"{solid.length:.0f} mm of rope {2 * solid.radius:.3g} mm thick"
-    return f"{size} mm, {rope}, {solid.triangles:,} triangles"
+    rope = f"{solid.length:.0f} mm of rope {solid.diameter:.3g} mm thick"
+    return f"{size} mm, {rope}, printed {2 * solid.radius:.3g} mm thick, {solid.triangles:,} triangles"
 
 
 @dataclass(frozen=True)
@@ -130,7 +142,7 @@ class _Maker:
 
     output: str
     format: str
-    lengths: tuple[float, float, float]
+    lengths: "Lengths"
     force: bool
     done: set[str] = field(default_factory=set)
 
@@ -170,7 +182,7 @@ class _Maker:
 
         curve = rope_of(source)
         try:
-            return patiently(lambda: solid(curve.components, *self.lengths))
+            return patiently(lambda: solid(curve.components, self.lengths))
         except CurveError as error:
             raise located(error, curve) from error
         except ValueError as error:
