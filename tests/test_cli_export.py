@@ -299,6 +299,8 @@ def test_inches_are_told_from_millimetres(sono: Sono) -> None:
             "--rope-diameter and --size both tell the scale",
         ),
         (["-o", "k.stl", "--size", "9", "--gap", "1e999"], "the gap is inf mm; give 0 or more"),
+        (["4_1", "-o", "prints"], "prints is one file; name a folder, prints/, for 2 ropes"),
+        (["-o", "prints"], "prints/ is a folder, and --format tells"),
         (["4_1", "-o", "k.stl"], "k.stl is one file; name a folder, k.stl/, for 2 ropes"),
         ([], "Missing option '-o'"),
     ],
@@ -354,10 +356,74 @@ def test_without_trimesh(sono: Sono, monkeypatch: pytest.MonkeyPatch) -> None:
     assert sono("export", "3_1", "-o", "k.3mf", "--tolerance", "0.2").exit_code == 0
 
 
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("gauss:1 2 3 1 2 3", "no minus tells what is below; put one where it is, as in 1 -2 3 -1 2 -3"),
+        ("gauss:1 -2 -1 2", "it cannot be drawn in the plane"),
+        ("dt:4 x 2", "DT code '4 x 2': not readable"),
+        ("8_22", "did you mean one of 8_1 to 8_21?"),
+        ("3 1", "falls into pieces; did you mean '3_1'?"),
+    ],
+)
+def test_what_is_no_knot_is_not_told_to_be_tightened(sono: Sono, source: str, message: str) -> None:
+    result = sono("export", source, "-o", "k.3mf")
+    assert (result.exit_code, os.path.exists("k.3mf")) == (1, False)
+    assert message in result.stderr
+    assert "sono tighten" not in result.stderr
+
+
+def test_what_has_the_atlas_by_another_name_is_printed_so(sono: Sono) -> None:
+    for name in ("P(-2,3,7)", "12n_242", "pd:[(1,5,2,4),(3,1,4,6),(5,3,6,2)]", "3_1"):
+        assert sono("export", name, "-o", "out/", "--format", "3mf", "--tolerance", "0.2").exit_code == 0
+    sizes = {os.path.getsize(f"out/{name}") for name in os.listdir("out")}
+    assert len(os.listdir("out")) == 4
+    assert len(sizes) == 2
+
+
+def test_a_loose_curve_is_told_to_be_loose(sono: Sono) -> None:
+    for name in ("8_18", "Borromean", "T(2,11)"):
+        package.write("loose.txt", package.start(name))
+        loose = sono("export", "loose.txt", "-o", "k.3mf", "--force", "--tolerance", "0.2")
+        assert loose.exit_code == 0
+        assert "`sono tighten loose.txt -o rope.txt` makes it shorter first" in loose.stderr
+        package.write("tight.txt", package.start(name, known=True))
+        for tight in (name, "tight.txt"):
+            result = sono("export", tight, "-o", "k.3mf", "--force", "--tolerance", "0.2")
+            assert "loose" not in result.stderr
+
+
+def test_ropes_of_few_beads_are_not_loose(sono: Sono) -> None:
+    for n in (40, 60, 2000):
+        package.write("rope.txt", coarse("3_1", n))
+        assert (
+            "loose" not in sono("export", "rope.txt", "-o", "k.3mf", "--force", "--tolerance", "0.2").stderr
+        )
+
+
+@pytest.mark.parametrize("suffix", ["stl", "ply", "glb", "3mf"])
+def test_a_solid_is_no_curve(sono: Sono, suffix: str) -> None:
+    sono("export", "3_1", "-o", f"k.{suffix}", "--tolerance", "0.2")
+    for command in (("export", "-o", "again.3mf"), ("measure",), ("identify",)):
+        result = sono(command[0], f"k.{suffix}", *command[1:])
+        assert result.exit_code == 1
+        assert f"k.{suffix}:1: this is a solid, not a curve; give the curve, or the knot's" in result.stderr
+
+
+def test_what_the_message_says_of_the_rope_is_what_it_takes(sono: Sono) -> None:
+    for name in ("4_1", "Whitehead"):
+        result = sono("export", name, "-o", f"{name}.3mf", "--rope-diameter", "50mm", "--tolerance", "0.5")
+        told = re.search(r"([0-9]+) mm of rope 50 mm thick, printed 49.6 mm thick", result.stderr)
+        assert told is not None
+        ropelength = package.measure(name).l_a or 0
+        assert int(told[1]) == pytest.approx(25 * ropelength, rel=0.003)
+
+
 def test_a_place_that_cannot_be_written(folder: Path, sono: Sono) -> None:
     result = sono("export", "3_1", "-o", "nowhere/k.stl", "--tolerance", "0.2")
     assert (result.exit_code, result.stderr.count("\n")) == (1, 1)
     assert result.stderr.startswith("sono: nowhere/k.stl: cannot be written: ")
+    assert "; make the folder nowhere first" in result.stderr
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a full device")

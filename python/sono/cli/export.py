@@ -2,9 +2,11 @@
 
 import os
 import re
+import shlex
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -14,10 +16,14 @@ from sono.cli.each import each, rope_of
 from sono.cli.options import Function
 
 if TYPE_CHECKING:
+    from sono.curve import Components
     from sono.figures.lengths import Lengths
     from sono.figures.solids import Solid
-    from sono.formats import Close
+    from sono.formats import Close, VertexFile
     from sono.jobs.sources import Source
+
+LOOSE = 0.6
+"""Residual of a curve that is no rope: that of tight ropes is near 0, of ropes of a few beads 0.4 at most."""
 
 UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
 
@@ -89,17 +95,18 @@ def command(
       sono export 3_1 -o trefoil.3mf --size 80mm
       sono export 6^3_2 tight.txt -o prints/ --format 3mf --gap 0.5mm
     """
+    if len(given) > 1 and places.names_one_file(output):
+        raise click.UsageError(f"{output} is one file; name a folder, {output}/, for {len(given)} ropes")
     maker = _Maker(output, _format(output, format_), _checked(lengths), force)
 
     def export(source: "Source") -> None:
-        path, solid = maker.written(source)
+        path, solid, doubt = maker.written(source)
         if not quiet:
             options.complain(f"{path}: {_told(solid)}")
+            if doubt:
+                options.complain(doubt)
 
-    if places.names_one_file(output):
-        if len(given) > 1:
-            raise click.UsageError(f"{output} is one file; name a folder, {output}/, for {len(given)} ropes")
-    else:
+    if not places.names_one_file(output):
         places.make_folder(output)
     sys.exit(each(given, close, export))
 
@@ -114,7 +121,8 @@ def _format(output: str, named: str | None) -> str:
     try:
         return solidfiles.by_suffix(f"--format .{named.lower()}" if named else output)
     except FormatError as error:
-        raise click.UsageError(str(error)) from error
+        folder = "" if named or PurePath(output).suffix else f"; {output}/ is a folder, and --format tells"
+        raise click.UsageError(f"{error}{folder}") from error
 
 
 def _checked(lengths: dict[str, Any]) -> "Lengths":
@@ -136,6 +144,16 @@ def _told(solid: "Solid") -> str:
     return f"{size} mm, {rope}, printed {2 * solid.radius:.3g} mm thick, {solid.triangles:,} triangles"
 
 
+def _doubt(source: "Source", curve: "Components") -> str:
+    """Say that a curve is loose, if forces do not balance on it at all."""
+    from sono.curve import forces, measure
+
+    if forces(curve).residual < LOOSE:
+        return ""
+    tighten = f"`sono tighten {shlex.quote(source.given)} -o rope.txt`"
+    return f"{source}: is loose, of ropelength {measure(curve).l_p:.4g}; {tighten} makes it shorter first"
+
+
 @dataclass(frozen=True)
 class _Maker:
     """Makes solids of such lengths, in millimetres, and writes each to a file of its own."""
@@ -146,15 +164,15 @@ class _Maker:
     force: bool
     done: set[str] = field(default_factory=set)
 
-    def written(self, source: "Source") -> "tuple[str, Solid]":
-        """Write the solid of a curve; return the file's name and the solid. Raises `FormatError`."""
+    def written(self, source: "Source") -> "tuple[str, Solid, str]":
+        """Write the solid of a curve; return the file's name, it, and a doubt. Raises `FormatError`."""
         from sono.figures import solidfiles
 
-        path = self._path(source)
-        solid = self._made(source)
+        path, curve = self._path(source), rope_of(source)
+        solid = self._made(source, curve)
         solidfiles.write(path, solid, self.format)
         self.done.add(path)
-        return path, solid
+        return path, solid, _doubt(source, curve.components)
 
     def _path(self, source: "Source") -> str:
         """Return the name of a file that may be written. Raises `FormatError`."""
@@ -171,7 +189,7 @@ class _Maker:
             raise FormatError(f"{path} exists; --force overwrites it")
         return path
 
-    def _made(self, source: "Source") -> "Solid":
+    def _made(self, source: "Source", curve: "VertexFile") -> "Solid":
         """Make the solid of a curve. Raises `FormatError`."""
         # Imported here, since numpy would make --help wait.
         from sono._core import CurveError
@@ -180,7 +198,6 @@ class _Maker:
         from sono.jobs.curvefiles import located
         from sono.patience import patiently
 
-        curve = rope_of(source)
         try:
             return patiently(lambda: solid(curve.components, self.lengths))
         except CurveError as error:
