@@ -50,9 +50,15 @@ def in_3mf(path: Path) -> list[Any]:
         model = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
     assert model.get("unit") == "millimeter"
     objects = model.findall(f"{core}resources/{core}object")
-    assert [item.get("objectid") for item in model.iter(f"{core}item")] == [o.get("id") for o in objects]
+    (item,) = model.iter(f"{core}item")
+    assert item.get("objectid") == objects[-1].get("id")
+    bodies = [one for one in objects if one.find(f"{core}mesh") is not None]
+    if len(bodies) > 1:
+        listed = [part.get("objectid") for part in objects[-1].iter(f"{core}component")]
+        assert listed == [one.get("id") for one in objects[:-1]] == [one.get("id") for one in bodies]
+        assert objects[-1].get("pid") is None
     found = []
-    for one in objects:
+    for one in bodies:
         vertices = [[float(v.get(k, "")) for k in "xyz"] for v in one.iter(f"{core}vertex")]
         faces = [[int(t.get(k, "")) for k in ("v1", "v2", "v3")] for t in one.iter(f"{core}triangle")]
         found.append(trimesh.Trimesh(vertices, faces, process=False))
