@@ -17,6 +17,7 @@ import sono as package
 from sono import formats
 from sono.curve import Components, Floats
 from sono.figures import solids
+from sono.figures.lengths import Lengths
 from sono.figures.solidfiles import FORMATS
 from sono.figures.tube import sides_within
 
@@ -49,9 +50,15 @@ def in_3mf(path: Path) -> list[Any]:
         model = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
     assert model.get("unit") == "millimeter"
     objects = model.findall(f"{core}resources/{core}object")
-    assert [item.get("objectid") for item in model.iter(f"{core}item")] == [o.get("id") for o in objects]
+    (item,) = model.iter(f"{core}item")
+    assert item.get("objectid") == objects[-1].get("id")
+    bodies = [one for one in objects if one.find(f"{core}mesh") is not None]
+    if len(bodies) > 1:
+        listed = [part.get("objectid") for part in objects[-1].iter(f"{core}component")]
+        assert listed == [one.get("id") for one in objects[:-1]] == [one.get("id") for one in bodies]
+        assert objects[-1].get("pid") is None
     found = []
-    for one in objects:
+    for one in bodies:
         vertices = [[float(v.get(k, "")) for k in "xyz"] for v in one.iter(f"{core}vertex")]
         faces = [[int(t.get(k, "")) for k in ("v1", "v2", "v3")] for t in one.iter(f"{core}triangle")]
         found.append(trimesh.Trimesh(vertices, faces, process=False))
@@ -152,7 +159,7 @@ def coarse(name: str, n: int) -> Components:
     ids=["tight", "no gap", "link", "loose", "n=15", "n=7", "huge"],
 )
 def test_strands_keep_the_gap(curve: Components, gap: float) -> None:
-    made = solids.solid(curve, 2.0, gap, 0.1)
+    made = solids.solid(curve, Lengths(2.0, gap=gap, tolerance=0.1))
     assert made.radius == pytest.approx(1 - gap / 2)
     sides = sides_within(made.radius, 0.1)
     line = [mesh.vertices.reshape(-1, sides, 3).mean(axis=1) for mesh in made.components]
@@ -183,7 +190,7 @@ def crossed(one: Floats, other: Floats) -> bool:
     "curve", [list(package.start("Hopf", known=True)), coarse("3_1", 12)], ids=["Hopf", "12"]
 )
 def test_no_triangle_meets_another(curve: Components) -> None:
-    made = solids.solid(curve, 2.0, 0.0, 0.05)
+    made = solids.solid(curve, Lengths(2.0, gap=0, tolerance=0.05))
     triangles = np.concatenate([mesh.vertices[mesh.faces] for mesh in made.components])
     low, high = triangles.min(axis=1), triangles.max(axis=1)
     for i, one in enumerate(triangles):
@@ -207,9 +214,72 @@ def test_the_scale_is_that_of_the_rope(folder: Path, sono: Sono) -> None:
     assert np.allclose(bodies("d.ply")[0].extents + 0.4, sizes[0], atol=0.02)
 
 
+def about(vector: Floats) -> Floats:
+    """Return a rotation of space that lays the x axis along a vector."""
+    turn = np.linalg.qr(np.column_stack([vector, np.eye(3)]))[0]
+    return np.asarray(turn * [np.linalg.det(turn), 1, 1])
+
+
+@pytest.mark.parametrize("name", ["3_1", "4_1", "8_18", "Borromean", "T(2,7)", "T(3,5)"])
+@pytest.mark.parametrize("lies", [[1.0, 0, 0], [0.3, -0.5, 0.8], [-0.2, 0.9, 0.1]])
+def test_a_rope_is_laid_flat_however_its_file_has_it(name: str, lies: list[float]) -> None:
+    rope = [part @ about(np.array(lies)) for part in package.start(name, known=True)]
+    made = solids.solid(rope, Lengths(gap=0, tolerance=0.1))
+    x, y, z = made.size
+    assert x > y - 0.05 > z - 0.1
+    points = np.concatenate([mesh.vertices for mesh in made.components])
+    assert (points.min(axis=0) == 0).all()
+    random = np.random.default_rng(3)
+    for _ in range(500):
+        box = np.ptp(points @ about(random.normal(size=3)) @ about(random.normal(size=3)), axis=0)
+        assert np.prod(box) > 0.99 * x * y * z
+    assert (
+        package.identify(
+            [mesh.vertices.reshape(-1, sides_within(3, 0.1), 3).mean(axis=1) for mesh in made.components]
+        ).names
+        == package.identify(rope).names
+    )
+
+
+def test_a_flat_trefoil_is_less_high_than_two_ropes() -> None:
+    x, y, z = solids.solid(list(package.start("3_1", known=True)), Lengths()).size
+    assert z < 12.2
+    assert x == pytest.approx(23.4, abs=0.2)
+    assert y == pytest.approx(22.4, abs=0.2)
+
+
+@pytest.mark.parametrize("gap", [0, 0.4, 3.0])
+@pytest.mark.parametrize(("name", "size"), [("3_1", 80), ("8_18", 30), ("Borromean", 25), ("T(2,11)", 200)])
+def test_the_longest_side_is_the_size(name: str, size: float, gap: float) -> None:
+    made = solids.solid(list(package.start(name, known=True)), Lengths(size=size, gap=gap, tolerance=0.05))
+    assert size - 0.1 < max(made.size) < size + 1e-9
+    assert made.diameter == pytest.approx(2 * made.radius + gap)
+    same = solids.solid(
+        list(package.start(name, known=True)), Lengths(made.diameter, gap=gap, tolerance=0.05)
+    )
+    assert same.size == pytest.approx(made.size, abs=0.2)
+
+
+def test_the_size_of_any_curve(folder: Path, sono: Sono) -> None:
+    package.write("loose.txt", [30 * part for part in package.start("4_1")])
+    for source in ("loose.txt", "7_4", "Whitehead"):
+        result = sono("export", source, "-o", "k.3mf", "--size", "2.5in", "--force", "--tolerance", "0.1mm")
+        assert "k.3mf: 63.5 x " in result.stderr or "k.3mf: 63.4 x " in result.stderr
+
+
+@pytest.mark.parametrize(
+    "lengths", [{"rope_diameter": "6mm"}, {"size": "80"}, {"gap": None}, {"tolerance": [1]}, {"size": True}]
+)
+def test_what_is_no_number_of_millimetres(lengths: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="give a number of millimetres, such as 6"):
+        package.export("k.3mf", "3_1", **lengths)
+    with pytest.raises(ValueError, match="both; give one"):
+        package.export("k.3mf", "3_1", rope_diameter=6, size=80)
+
+
 def test_inches_are_told_from_millimetres(sono: Sono) -> None:
     result = sono("export", "3_1", "-o", "k.stl", "--rope-diameter", "0.5 in", "--gap", "0.05in")
-    assert "mm of rope 11.4 mm thick" in result.stderr
+    assert "mm of rope 12.7 mm thick, printed 11.4 mm thick" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -229,6 +299,14 @@ def test_inches_are_told_from_millimetres(sono: Sono) -> None:
         (["-o", "k.stl", "--rope-diameter", "9e999"], "the rope's diameter is inf mm"),
         (["-o", "k.stl", "--tolerance", "0"], "the tolerance is 0 mm; give one above 0"),
         (["-o", "k.stl", "--gap", "6mm"], "a gap of 6 mm leaves nothing of a rope of 6 mm"),
+        (["-o", "k.stl", "--size", "0"], "the size is 0 mm; give one above 0"),
+        (
+            ["-o", "k.stl", "--size", "9", "--rope-diameter", "6"],
+            "--rope-diameter and --size both tell the scale",
+        ),
+        (["-o", "k.stl", "--size", "9", "--gap", "1e999"], "the gap is inf mm; give 0 or more"),
+        (["4_1", "-o", "prints"], "prints is one file; name a folder, prints/, for 2 ropes"),
+        (["-o", "prints"], "prints/ is a folder, and --format tells"),
         (["4_1", "-o", "k.stl"], "k.stl is one file; name a folder, k.stl/, for 2 ropes"),
         ([], "Missing option '-o'"),
     ],
@@ -284,10 +362,74 @@ def test_without_trimesh(sono: Sono, monkeypatch: pytest.MonkeyPatch) -> None:
     assert sono("export", "3_1", "-o", "k.3mf", "--tolerance", "0.2").exit_code == 0
 
 
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("gauss:1 2 3 1 2 3", "no minus tells what is below; put one where it is, as in 1 -2 3 -1 2 -3"),
+        ("gauss:1 -2 -1 2", "it cannot be drawn in the plane"),
+        ("dt:4 x 2", "DT code '4 x 2': not readable"),
+        ("8_22", "did you mean one of 8_1 to 8_21?"),
+        ("3 1", "falls into pieces; did you mean '3_1'?"),
+    ],
+)
+def test_what_is_no_knot_is_not_told_to_be_tightened(sono: Sono, source: str, message: str) -> None:
+    result = sono("export", source, "-o", "k.3mf")
+    assert (result.exit_code, os.path.exists("k.3mf")) == (1, False)
+    assert message in result.stderr
+    assert "sono tighten" not in result.stderr
+
+
+def test_what_has_the_atlas_by_another_name_is_printed_so(sono: Sono) -> None:
+    for name in ("P(-2,3,7)", "12n_242", "pd:[(1,5,2,4),(3,1,4,6),(5,3,6,2)]", "3_1"):
+        assert sono("export", name, "-o", "out/", "--format", "3mf", "--tolerance", "0.2").exit_code == 0
+    sizes = {os.path.getsize(f"out/{name}") for name in os.listdir("out")}
+    assert len(os.listdir("out")) == 4
+    assert len(sizes) == 2
+
+
+def test_a_loose_curve_is_told_to_be_loose(sono: Sono) -> None:
+    for name in ("8_18", "Borromean", "T(2,11)"):
+        package.write("loose.txt", package.start(name))
+        loose = sono("export", "loose.txt", "-o", "k.3mf", "--force", "--tolerance", "0.2")
+        assert loose.exit_code == 0
+        assert "`sono tighten loose.txt -o rope.txt` makes it shorter first" in loose.stderr
+        package.write("tight.txt", package.start(name, known=True))
+        for tight in (name, "tight.txt"):
+            result = sono("export", tight, "-o", "k.3mf", "--force", "--tolerance", "0.2")
+            assert "loose" not in result.stderr
+
+
+def test_ropes_of_few_beads_are_not_loose(sono: Sono) -> None:
+    for n in (40, 60, 2000):
+        package.write("rope.txt", coarse("3_1", n))
+        assert (
+            "loose" not in sono("export", "rope.txt", "-o", "k.3mf", "--force", "--tolerance", "0.2").stderr
+        )
+
+
+@pytest.mark.parametrize("suffix", ["stl", "ply", "glb", "3mf"])
+def test_a_solid_is_no_curve(sono: Sono, suffix: str) -> None:
+    sono("export", "3_1", "-o", f"k.{suffix}", "--tolerance", "0.2")
+    for command in (("export", "-o", "again.3mf"), ("measure",), ("identify",)):
+        result = sono(command[0], f"k.{suffix}", *command[1:])
+        assert result.exit_code == 1
+        assert f"k.{suffix}:1: this is a solid, not a curve; give the curve, or the knot's" in result.stderr
+
+
+def test_what_the_message_says_of_the_rope_is_what_it_takes(sono: Sono) -> None:
+    for name in ("4_1", "Whitehead"):
+        result = sono("export", name, "-o", f"{name}.3mf", "--rope-diameter", "50mm", "--tolerance", "0.5")
+        told = re.search(r"([0-9]+) mm of rope 50 mm thick, printed 49.6 mm thick", result.stderr)
+        assert told is not None
+        ropelength = package.measure(name).l_a or 0
+        assert int(told[1]) == pytest.approx(25 * ropelength, rel=0.003)
+
+
 def test_a_place_that_cannot_be_written(folder: Path, sono: Sono) -> None:
     result = sono("export", "3_1", "-o", "nowhere/k.stl", "--tolerance", "0.2")
     assert (result.exit_code, result.stderr.count("\n")) == (1, 1)
     assert result.stderr.startswith("sono: nowhere/k.stl: cannot be written: ")
+    assert "; make the folder nowhere first" in result.stderr
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a full device")

@@ -161,3 +161,56 @@ def test_a_place_has_the_name_that_published_values_go_by() -> None:
         "T(24,-19)",
     ]
     assert [shapes.place(name).knot for name in names] == [starts.canonical(name) for name in names]
+
+
+@pytest.mark.parametrize(
+    ("name", "knot"),
+    [
+        ("P(-2,3,7)", "12n_242"),
+        ("P(2,-3,-7)", "m12n_242"),
+        ("m P(-2,3,7)", "m12n_242"),
+        ("pretzel(3,3,3)", "m9_35"),
+        ("7/3", "5_2"),
+        ("7/-3", "m5_2"),
+        ("C(3,1,2)", "6_2"),
+        ("dt:4 6 8 2", "4_1"),
+        ("mdt:4 6 2", "m3_1"),
+        ("-1 -1 -1", "m3_1"),
+        ("(1 -2)^4", "8_18"),
+        ("Turk's head 3x5", "10_123"),
+        ("1 1 1 -2 -2 -2", "3_1#m3_1"),
+        ("1 2 1 2 1 2 1 2 1 2 1 2 1 2", "T(3,7)"),
+    ],
+)
+def test_what_is_drawn_from_a_diagram_has_the_rope_of_its_type(name: str, knot: str) -> None:
+    rope = starts.known(name)
+    assert rope is not None
+    assert np.array_equal(rope[0], np.asarray((starts.known(knot) or [])[0]))
+    assert api.verify(rope, starts.start(name)).verdict == "same"
+
+
+@pytest.mark.parametrize("name", ["gauss:1 -2 | 2 -1", "-1 -1", "4/1", "-4/1", "4/-3", "8/3", "P(2,2,2)"])
+def test_the_rope_of_a_link_runs_as_its_diagram_does(name: str) -> None:
+    rope = starts.known(name)
+    assert rope is not None
+    assert api.verify(rope, starts.start(name)).verdict == "same"
+
+
+@pytest.mark.parametrize(
+    "name", ["P(-2,3,9)", "P(5,7,9)", "3 1", "1 -1", "chain4", "pd:[]", "(1 2)^0", "foo"]
+)
+def test_what_the_atlas_has_not_by_any_name(name: str) -> None:
+    assert starts.known(name) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [("3 1", "did you mean '3_1'?"), ("8 20", "mean '8_20'?"), ("1 1 3 3", "give every generator up to the")],
+)
+def test_a_braid_that_falls_into_pieces_is_doubted(name: str, meant: str, sono: Sono) -> None:
+    doubt = starts.doubt(name)
+    assert doubt is not None
+    assert meant in doubt
+    assert f"sono: {doubt}\n" == sono("start", name, "-o", "k.txt").stderr
+    for whole in ("1 -2 1 -2", "1 1", "-2 1", "3_1", "gauss:1 -2 | 2 -1", "3 1 2"):
+        assert starts.doubt(whole) is None

@@ -40,6 +40,15 @@ _PDS = [("PD[X[", "], X[", "]]"), ("X[", "] X[", "]"), ("[[", "],[", "]]"), ("[ 
         *[(name, "0_1") for name in ("0.1", "K0a1", "0₁", "unknot", "trivial knot", "$0_1$")],
         *[(name, "4^2_1") for name in ("$4_1^2$", "Solomon's link", "Solomon link", "Link[4,Alternating,1]")],
         *[("granny knot", "3_1#3_1"), ("Square Knot", "3_1#m3_1"), ("mgranny", "m3_1#m3_1")],
+        *[("overhand knot", "3_1"), ("Overhand", "3_1"), ("reef knot", "3_1#m3_1"), ("mreef", "m3_1#3_1")],
+        *[("endless knot", "7_4"), ("pentafoil", "5_1"), ("septafoil", "7_1"), ("carrick mat", "8_18")],
+        *[
+            (name, "1 -2 1 -2 1 -2 1 -2")
+            for name in ("(1 -2)^4", "(1, -2) ^ 4", "(1 -2)4", "Turk's head 3x4")
+        ],
+        *[(name, "1 -2 1 -2 1 -2") for name in ("TurksHead(3,3)", "THK[3, 3]", "Turk’s Head knot 3 × 3")],
+        *[("Turks head 4x2", "1 -2 3 1 -2 3"), ("Turk's head 2x5", "1 1 1 1 1")],
+        *[("pretzel(3,3,3)", "P(3,3,3)"), ("Pretzel[-2, 3, 7]", "P(-2,3,7)")],
         *[("Hopf link", "Hopf"), ("Borromean rings", "L6a4"), ("whitehead link", "L5a1")],
         *[
             ("T_{2,3}", "T(2,3)"),
@@ -104,6 +113,10 @@ def test_what_is_no_name_stays_as_it_is() -> None:
             (name, f"unknown knot {name!r}: a part has no name")
             for name in ("m", "#3_1", "3_1#", "", "!", "m()")
         ],
+        ("8*", "unknown knot '8*': known are"),
+        ("3_1#!8_22", "unknown knot '!8_22'"),
+        ("8_22 mirror", "unknown knot '8_22 mirror'"),
+        ("quipu", "`sono start --list` has what is built in"),
         ("8-20", "did you mean '8_20'?"),
         ("3_1#8_22", "one of 8_1 to 8_21?"),
     ],

@@ -4,6 +4,7 @@ import base64
 import json
 import re
 from html.parser import HTMLParser
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from conftest import Sono
 from numpy.typing import NDArray
 
 import sono as package
+from sono.figures.plot.sheet import COLOURS
 from sono.figures.turning import turned
 from sono.figures.view import WEAKEST, curvature, page, titled
 
@@ -57,6 +59,13 @@ def placed(data: dict[str, Any]) -> NDArray[np.float64]:
 @pytest.fixture(scope="module")
 def borromean() -> str:
     return page([("rings", package.start("Borromean", known=True))], "Rings")
+
+
+def test_components_have_the_colours_of_plots_and_prints() -> None:
+    script = resources.files("sono").joinpath("data", "view", "colours.js").read_text()
+    listed = re.search(r"COMPONENTS = \[(.*?)\]", script)
+    assert listed is not None
+    assert [f"#{one.upper()}" for one in re.findall("[0-9a-f]{6}", listed[1])] == [*COLOURS["light"]]
 
 
 def test_a_page_needs_nothing_else(borromean: str) -> None:

@@ -71,16 +71,16 @@ def file_of(source: "Source", command: str, does: str) -> "VertexFile":
 
 def rope_of(source: "Source") -> "VertexFile":
     """Read a file, or return the rope that the atlas has of a name. Raises `FormatError`."""
-    import sono
     from sono import starts
     from sono.formats import FormatError
     from sono.jobs.sources import as_file
 
     if not (source.knot and starts.knows(source.knot)):
         return source.read()
-    try:
-        curve = sono.start(source.given, known=True)
-    except ValueError as error:
-        cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one"
-        raise FormatError(f"{source}: {error}; {cure}") from error
-    return as_file(source.given, list(curve), f"{source.name}, the rope of the atlas")
+    if rope := starts.known(source.given):
+        return as_file(source.given, rope, f"{source.name}, the rope of the atlas")
+    source.read()  # says what is wrong with it, if it is no name at all
+    if doubt := starts.doubt(source.given):
+        raise FormatError(f"{source}: {doubt}")
+    cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one"
+    raise FormatError(f"{source}: the atlas has no rope of {source.given!r}; {cure}")

@@ -2,10 +2,12 @@
 
 import os
 import re
+import shlex
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,15 +16,22 @@ from sono.cli.each import each, rope_of
 from sono.cli.options import Function
 
 if TYPE_CHECKING:
+    from sono.curve import Components
+    from sono.figures.lengths import Lengths
     from sono.figures.solids import Solid
-    from sono.formats import Close
+    from sono.formats import Close, VertexFile
     from sono.jobs.sources import Source
+
+LOOSE = 0.6
+"""Residual of a curve that is no rope: that of tight ropes is near 0, of ropes of a few beads 0.4 at most."""
 
 UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "in": 25.4}
 
 
-def _length(ctx: click.Context, param: click.Parameter, value: str) -> float:
+def _length(ctx: click.Context, param: click.Parameter, value: str | None) -> float | None:
     """Return a length in millimetres."""
+    if value is None:
+        return None
     found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?) *([a-z]*)", value.strip().lower())
     try:
         number, unit = found.groups() if found else ("", "")
@@ -31,7 +40,7 @@ def _length(ctx: click.Context, param: click.Parameter, value: str) -> float:
         raise click.BadParameter(f"{value!r} is no length; give one such as 6mm, 0.6cm or 0.25in") from None
 
 
-def length(name: str, variable: str, default: str, help: str) -> Callable[[Function], Function]:
+def length(name: str, variable: str, default: str | None, help: str) -> Callable[[Function], Function]:
     """Return an option that is a length, in millimetres."""
     return click.option(
         name, variable, metavar="LENGTH", default=default, show_default=True, callback=_length, help=help
@@ -49,7 +58,13 @@ def length(name: str, variable: str, default: str, help: str) -> Callable[[Funct
     metavar="FORMAT",
     help="stl, obj, ply, glb or 3mf.  [default: by the suffix, or stl]",
 )
-@length("--rope-diameter", "diameter", "6mm", "Scale of the print: strands of such a rope touch.")
+@length(
+    "--rope-diameter",
+    "diameter",
+    None,
+    "Scale of the print: strands of such a rope touch.  [default: 6mm]",
+)
+@length("--size", "size", None, "Scale by the longest side of the print instead.")
 @length("--gap", "gap", "0.4mm", "Between strands, which are printed thinner by it.")
 @length("--tolerance", "tolerance", "0.02mm", "How far facets may be off the round tube.")
 @options.close
@@ -62,7 +77,7 @@ def command(
     close: "Close | None",
     force: bool,
     quiet: bool,
-    **lengths: float,
+    **lengths: float | None,
 ) -> None:
     """Write ropes as closed tubes for a 3D printer: .stl, .obj, .ply, .glb or .3mf, in millimetres.
 
@@ -70,25 +85,28 @@ def command(
     Lengths are in mm, or as their unit says: 6mm, 0.6cm, 0.25in.
 
     The rope is laid along the curve's inscribed knot, scaled so that strands of the rope's diameter just
-    touch. They are printed thinner by the gap, which they keep everywhere, so that they do not fuse. The
-    components of a link are bodies of their own, but for .stl and .ply, which have one; .glb and .3mf have
-    their colours, too. All but .3mf needs the extra sono[mesh].
+    touch, or so that the print is of a size. What is printed is thinner than the rope by the gap, which
+    strands keep everywhere, so that they do not fuse. It lies flat. The components of a link are bodies of
+    their own, but for .stl and .ply, which have one; .glb and .3mf have their colours, too. All but .3mf
+    needs the extra sono[mesh].
 
     \b
       sono export 4_1 -o figure8.stl --rope-diameter 6mm
+      sono export 3_1 -o trefoil.3mf --size 80mm
       sono export 6^3_2 tight.txt -o prints/ --format 3mf --gap 0.5mm
     """
-    maker = _Maker(output, _format(output, format_), _checked(**lengths), force)
+    if len(given) > 1 and places.names_one_file(output):
+        raise click.UsageError(f"{output} is one file; name a folder, {output}/, for {len(given)} ropes")
+    maker = _Maker(output, _format(output, format_), _checked(lengths), force)
 
     def export(source: "Source") -> None:
-        path, solid = maker.written(source)
+        path, solid, doubt = maker.written(source)
         if not quiet:
             options.complain(f"{path}: {_told(solid)}")
+            if doubt:
+                options.complain(doubt)
 
-    if places.names_one_file(output):
-        if len(given) > 1:
-            raise click.UsageError(f"{output} is one file; name a folder, {output}/, for {len(given)} ropes")
-    else:
+    if not places.names_one_file(output):
         places.make_folder(output)
     sys.exit(each(given, close, export))
 
@@ -103,25 +121,37 @@ def _format(output: str, named: str | None) -> str:
     try:
         return solidfiles.by_suffix(f"--format .{named.lower()}" if named else output)
     except FormatError as error:
-        raise click.UsageError(str(error)) from error
+        folder = "" if named or PurePath(output).suffix else f"; {output}/ is a folder, and --format tells"
+        raise click.UsageError(f"{error}{folder}") from error
 
 
-def _checked(diameter: float, gap: float, tolerance: float) -> tuple[float, float, float]:
+def _checked(lengths: dict[str, Any]) -> "Lengths":
     """Refuse lengths that make no rope."""
-    from sono.figures.solids import check
+    from sono.figures.lengths import Lengths
 
+    if lengths["diameter"] is not None and lengths["size"] is not None:
+        raise click.UsageError("--rope-diameter and --size both tell the scale; give one of them")
     try:
-        check(diameter, gap, tolerance)
+        return Lengths(**lengths)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    return diameter, gap, tolerance
 
 
 def _told(solid: "Solid") -> str:
     """Say what is printed."""
     size = " x ".join(f"{edge:.1f}" for edge in solid.size)
-    rope = f"{solid.length:.0f} mm of rope {2 * solid.radius:.3g} mm thick"
-    return f"{size} mm, {rope}, {solid.triangles:,} triangles"
+    rope = f"{solid.length:.0f} mm of rope {solid.diameter:.3g} mm thick"
+    return f"{size} mm, {rope}, printed {2 * solid.radius:.3g} mm thick, {solid.triangles:,} triangles"
+
+
+def _doubt(source: "Source", curve: "Components") -> str:
+    """Say that a curve is loose, if forces do not balance on it at all."""
+    from sono.curve import forces, measure
+
+    if forces(curve).residual < LOOSE:
+        return ""
+    tighten = f"`sono tighten {shlex.quote(source.given)} -o rope.txt`"
+    return f"{source}: is loose, of ropelength {measure(curve).l_p:.4g}; {tighten} makes it shorter first"
 
 
 @dataclass(frozen=True)
@@ -130,19 +160,19 @@ class _Maker:
 
     output: str
     format: str
-    lengths: tuple[float, float, float]
+    lengths: "Lengths"
     force: bool
     done: set[str] = field(default_factory=set)
 
-    def written(self, source: "Source") -> "tuple[str, Solid]":
-        """Write the solid of a curve; return the file's name and the solid. Raises `FormatError`."""
+    def written(self, source: "Source") -> "tuple[str, Solid, str]":
+        """Write the solid of a curve; return the file's name, it, and a doubt. Raises `FormatError`."""
         from sono.figures import solidfiles
 
-        path = self._path(source)
-        solid = self._made(source)
+        path, curve = self._path(source), rope_of(source)
+        solid = self._made(source, curve)
         solidfiles.write(path, solid, self.format)
         self.done.add(path)
-        return path, solid
+        return path, solid, _doubt(source, curve.components)
 
     def _path(self, source: "Source") -> str:
         """Return the name of a file that may be written. Raises `FormatError`."""
@@ -159,7 +189,7 @@ class _Maker:
             raise FormatError(f"{path} exists; --force overwrites it")
         return path
 
-    def _made(self, source: "Source") -> "Solid":
+    def _made(self, source: "Source", curve: "VertexFile") -> "Solid":
         """Make the solid of a curve. Raises `FormatError`."""
         # Imported here, since numpy would make --help wait.
         from sono._core import CurveError
@@ -168,9 +198,8 @@ class _Maker:
         from sono.jobs.curvefiles import located
         from sono.patience import patiently
 
-        curve = rope_of(source)
         try:
-            return patiently(lambda: solid(curve.components, *self.lengths))
+            return patiently(lambda: solid(curve.components, self.lengths))
         except CurveError as error:
             raise located(error, curve) from error
         except ValueError as error:

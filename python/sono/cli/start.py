@@ -86,6 +86,8 @@ def command(
             curve = scramble(curve, scramble_seed)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
+    if doubt := starts.doubt(name or ""):
+        options.complain(doubt)
     try:
         formats.write(output, curve, [title])
     except formats.FormatError as error:

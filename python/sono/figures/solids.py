@@ -1,8 +1,9 @@
 """Ropes as solids that can be printed: tubes in millimetres, whose strands keep a gap.
 
-A rope is laid along its inscribed knot K_P, on edges that are short enough for the tolerance, and scaled to
-R_c = half the rope's diameter. Strands of this diameter would just touch; they are printed thinner by the
-gap, which all of them then keep: `figures/tube.py` says why no tube meets itself or another.
+A rope is laid along its inscribed knot K_P, on edges that are short enough for the tolerance, flat on the
+bed (see `figures/bed.py`), and scaled to R_c = half the rope's diameter. Strands of this diameter would just
+touch; they are printed thinner by the gap, which all of them then keep: `figures/tube.py` says why no tube
+meets itself or another.
 """
 
 import math
@@ -12,6 +13,8 @@ import numpy as np
 
 from sono import _core
 from sono.curve import Components, Floats, measure
+from sono.figures.bed import flat
+from sono.figures.lengths import Lengths
 from sono.figures.tube import Mesh, sides_within, spacing_within, tube
 from sono.records import Record
 
@@ -29,7 +32,9 @@ SLACK = 1.03
 class Solid(Record):
     """A rope to be printed, in millimetres: a tube of this `radius` for each component.
 
-    `size` are the edges of its bounding box, which has a corner at the origin, and `length` that of the rope.
+    `size` are the edges of its bounding box, the longest one first, but for the tolerance; the box has a
+    corner at the origin. `diameter` is that of the rope, of which the gap is taken off, and `length` what it
+    takes of such a rope: its ropelength L_a times half the diameter.
 
     >>> import sono, tempfile, pathlib
     >>> path = pathlib.Path(tempfile.mkdtemp(), "trefoil.stl")
@@ -42,6 +47,7 @@ class Solid(Record):
     size: tuple[float, float, float]
     length: float
     radius: float
+    diameter: float
 
     @property
     def triangles(self) -> int:
@@ -49,38 +55,37 @@ class Solid(Record):
         return sum(len(mesh.faces) for mesh in self.components)
 
 
-def solid(curve: Components, diameter: float, gap: float, tolerance: float) -> Solid:
-    """Lay a rope of this diameter along an embedded curve of any scale, its strands a gap apart.
+def solid(curve: Components, lengths: Lengths) -> Solid:
+    """Lay a rope along an embedded curve of any scale, its strands a gap apart.
 
-    All three are in millimetres; no facet is further than the `tolerance` from the smooth tube. Raises
-    `CurveError` for a curve that is not embedded, `ValueError` for lengths that make no rope, and where there
-    would be more than `MOST` triangles.
+    No facet is further than the tolerance from the smooth tube. Raises `CurveError` for a curve that is not
+    embedded, `ValueError` where the gap leaves nothing of the rope, and where there would be more than `MOST`
+    triangles.
     """
-    check(diameter, gap, tolerance)
-    radius = (diameter - gap) / 2
-    sides = sides_within(radius, tolerance)
-    line, r_c = _laid(curve, 2 * radius / diameter, 2 * tolerance / diameter, MOST // (2 * sides))
-    scale = diameter / (2 * r_c)
+    measures = measure(curve)
+    about = lengths.of(_longest(curve, measures.r_c or measures.r_s)[1])
+    line, r_c = _laid(curve, about, lengths)
+    line, longest = _longest(line, r_c)
+    diameter = lengths.of(longest)
+    radius, scale = (diameter - lengths.gap) / 2, diameter / (2 * r_c)
+    sides = sides_within(radius, lengths.tolerance)
     meshes = [tube(component * scale, radius, sides) for component in line]
     low = np.min([mesh.vertices.min(axis=0) for mesh in meshes], axis=0)
     meshes = [Mesh(mesh.vertices - low, mesh.faces) for mesh in meshes]
     x, y, z = np.max([mesh.vertices.max(axis=0) for mesh in meshes], axis=0).tolist()
-    return Solid(tuple(meshes), (x, y, z), measure(line).inscribed_length * scale, radius)
+    return Solid(tuple(meshes), (x, y, z), measure(line).l_a_or_l_p * diameter / 2, radius, diameter)
 
 
-def check(diameter: float, gap: float, tolerance: float) -> None:
-    """Refuse lengths that make no rope. Raises `ValueError`."""
-    for name, value in (("rope's diameter", diameter), ("tolerance", tolerance)):
-        if not 0 < value < math.inf:
-            raise ValueError(f"the {name} is {value:g} mm; give one above 0")
-    if not 0 <= gap < diameter:
-        raise ValueError(
-            f"a gap of {gap:g} mm leaves nothing of a rope of {diameter:g} mm; give a smaller one"
-        )
+def _longest(line: Components, r_c: float) -> tuple[list[Floats], float]:
+    """Lay a line flat; return it, and the longest edge of its box in R_c."""
+    line = flat(line, r_c)
+    return line, float(np.ptp(np.vstack(line), axis=0).max()) / r_c
 
 
-def _laid(curve: Components, radius: float, tolerance: float, most: int) -> tuple[list[Floats], float]:
-    """Return K_P on edges that are short enough, and its R_c; radius and tolerance are shares of R_c."""
+def _laid(curve: Components, diameter: float, lengths: Lengths) -> tuple[list[Floats], float]:
+    """Return K_P on edges that are short enough for a rope of about this diameter, and its R_c."""
+    radius, tolerance = 1 - lengths.gap / diameter, 2 * lengths.tolerance / diameter  # in R_c
+    most = MOST // (2 * sides_within(radius, tolerance))
     line, measures = list(curve), measure(curve)
     longest = 0.0
     while measures.r_c is None or longest == 0 or measures.dl > SLACK * longest:

@@ -1,6 +1,7 @@
-"""3MF files: a zip of XML, in millimetres, each component an object of its own, in its own colour.
+"""3MF files: a zip of XML, in millimetres, one object, whose parts are the components, each in its colour.
 
-Written here, since others put the time and random numbers in. Source: 3MF Core Specification 1.3.
+Slicers ask whether several objects are one, and else drop each to the bed by itself. Written here, since
+others put the time and random numbers in. Source: 3MF Core Specification 1.3, chapter 4.
 """
 
 import io
@@ -38,12 +39,16 @@ def write(meshes: Mapping[str, Mesh]) -> bytes:
 def _model(meshes: Mapping[str, Mesh]) -> str:
     paints = "".join(f'<base name="{name}" displaycolor="{colour(k)}"/>\n' for k, name in enumerate(meshes))
     objects = "".join(_object(k, name, mesh) for k, (name, mesh) in enumerate(meshes.items()))
-    items = "".join(f'<item objectid="{k + 2}"/>\n' for k in range(len(meshes)))
+    parts = "".join(f'<component objectid="{k + 2}"/>\n' for k in range(len(meshes)))
+    last = len(meshes) + 1
+    if len(meshes) > 1:
+        last += 1
+        objects += f'<object id="{last}" type="model">\n<components>\n{parts}</components>\n</object>\n'
     core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
     return (
         f'{_HEAD}<model unit="millimeter" xml:lang="en" xmlns="{core}">\n'
         f'<resources>\n<basematerials id="1">\n{paints}</basematerials>\n{objects}</resources>\n'
-        f"<build>\n{items}</build>\n</model>\n"
+        f'<build>\n<item objectid="{last}"/>\n</build>\n</model>\n'
     )
 
 

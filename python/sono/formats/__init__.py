@@ -168,6 +168,9 @@ SUFFIXES = {
 }
 """The format of a file by its suffix."""
 
+SOLIDS = (".stl", ".3mf", ".glb")
+"""Suffixes of what is no curve, but printed."""
+
 LOOSE = {PLAIN, "xyz", "csv"}
 """The formats whose suffixes say little of what is in a file: plain rows are called .xyz and .csv as well."""
 
@@ -236,6 +239,10 @@ def may_hold_several(path: str) -> bool:
 def _format_of(name: str, data: bytes) -> str:
     """Tell which format a file of this name has that begins like this. Raises `FormatError`."""
     refuse_trajectory(name, _suffix(name), data)
+    if _suffix(name) in SOLIDS or data.startswith((b"glTF", b"ply\n", b"ply\r")):
+        raise FormatError.at(
+            name, 1, "this is a solid, not a curve; give the curve, or the knot's name, that it was made of"
+        )
     if binary := next((key for key, reader in BINARY.items() if data.startswith(reader.MAGIC)), None):
         return binary
     own = SUFFIXES.get(_suffix(name), PLAIN)

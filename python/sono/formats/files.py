@@ -92,7 +92,11 @@ def save(target: str, content: str | bytes) -> None:
             # Without the time, so that the same curve gives the same bytes.
             stream.write(data if unpacked(target) == target else gzip.compress(data, mtime=0))
     except OSError as error:
-        raise FormatError(f"{target}: cannot be written: {error.strerror or error}") from error
+        folder = os.path.dirname(target)
+        cure = (
+            "" if os.path.isdir(folder or ".") else f"; make the folder {folder} first, or name another one"
+        )
+        raise FormatError(f"{target}: cannot be written: {error.strerror or error}{cure}") from error
 
 
 def make_folder(folder: Path) -> None:

@@ -114,7 +114,10 @@ def _dt(text: str) -> Diagram:
 
 def _gauss(text: str) -> Diagram:
     if not _PASSED.search(text):
-        return embedded([[(abs(number), number > 0) for number in word] for word in _lists(text, "gauss")])
+        words = _lists(text, "gauss")
+        if any(words) and all(number > 0 for word in words for number in word):
+            raise ValueError(f"no minus tells what is below; put one where it is, as in {_EXAMPLES['gauss']}")
+        return embedded([[(abs(number), number > 0) for number in word] for word in words])
     if re.search(r"\d", _PASSED.sub("", text)):
         raise _malformed("gauss")
     signs: dict[int, set[str]] = {}

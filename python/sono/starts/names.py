@@ -43,13 +43,21 @@ _INTEGERS = rf"[(\[]({_INTEGER}(?:[\s,]+{_INTEGER})*)[)\]]"
 TORUS = rf"T(?:orus\s*(?:Knot|Link))?\s*_?[(\[{{]({_INTEGER})[\s,]+({_INTEGER})[)\]}}]"
 CHAIN = r"chain\s*(\d{1,999})"
 BRAID = rf"{_INTEGER}(?:[\s,]+{_INTEGER})+"
-"""Patterns of torus types, chains of rings and braid words."""
+TURKS_HEAD = r"(?:THK|Turk['’]?s[\s_-]*head)(?:[\s_-]*knot)?[\s_-]*[(\[]?(\d{1,3})\s*[x×,]\s*(\d{1,3})[)\]]?"
+"""Patterns of torus types, chains of rings, braid words, and Turk's heads of so many leads and bights."""
+
+_WORDS: dict[str, Callable[[re.Match[str]], list[int]]] = {
+    BRAID: lambda match: _integers(match[0]),
+    rf"\(({BRAID})\)\s*\^?\s*(\d{{1,3}})": lambda match: _integers(match[1]) * int(match[2]),
+    TURKS_HEAD: lambda match: [k if k % 2 else -k for k in range(1, int(match[1]))] * int(match[2]),
+}
+"""What is a closed braid, and its word: that itself, the power of one, (1 -2 3 -4 ...)^bights."""
 
 _CURVES: dict[str, Callable[[re.Match[str]], Components]] = {
+    **{pattern: (lambda match: braid(_word(match[0]))) for pattern in _WORDS},
     "unknot|0_1": lambda match: chain(1),
     TORUS: lambda match: torus(int(match[1]), int(match[2])),
     CHAIN: lambda match: chain(int(match[1])),
-    BRAID: lambda match: braid(_integers(match[0])),
 }
 """What is drawn as a curve: patterns, without spaces round commas and brackets, and what draws it."""
 
@@ -58,7 +66,7 @@ _DIAGRAMS: dict[str, Callable[[re.Match[str]], Diagram]] = {
         match[1].casefold(), match[2]
     ),
     r"X[pm]?_?[\[({\d].*|\[(?:[\[({].*)?\]": lambda match: codes.diagram("pd", match[0]),
-    rf"P\s*{_INTEGERS}": lambda match: pretzel(_integers(match[1])),
+    rf"P(?:retzel)?\s*{_INTEGERS}": lambda match: pretzel(_integers(match[1])),
     rf"C\s*{_INTEGERS}": lambda match: conway(_integers(match[1])),
     rf"\[({_INTEGER}(?:\s+{_INTEGER})*)\]": lambda match: conway(conway_terms(match[1])),
     rf"({_INTEGER})/({_INTEGER})": lambda match: two_bridge(int(match[1]), int(match[2])),
@@ -83,12 +91,33 @@ def knows(name: str) -> bool:
     return all(_is_drawn(part) or matched(part.name, _CURVES) for part in summands(name))
 
 
+def doubt(name: str) -> str | None:
+    """Say what is odd about a braid word, if it has pieces that nothing links, as one has that is mistyped.
+
+    >>> doubt("3 1")
+    "'3 1' is read as a closed braid, and falls into pieces; did you mean '3_1'?"
+    >>> doubt("1 -2 1 -2")
+    """
+    generators = _word(name)
+    if set(map(abs, generators)) >= set(range(1, max(map(abs, generators), default=0) + 1)):
+        return None
+    meant = re.sub(r"\W+", "_", name.strip())
+    cure = f"did you mean {meant!r}?" if is_tabled(meant) else "give every generator up to the largest one"
+    return f"{name!r} is read as a closed braid, and falls into pieces; {cure}"
+
+
 def crossings(name: str) -> int:
     """Return how many crossings a name has itself: a code, a pretzel, a braid word, or so; 0 for others."""
     if found := matched(name, _DIAGRAMS):
         pattern, match = found
         return len(_DIAGRAMS[pattern](match).far) // 4
-    return len(_integers(name)) if matched(name, [BRAID]) else 0
+    return len(_word(name))
+
+
+def _word(name: str) -> list[int]:
+    """Return the braid word that a name stands for, or none."""
+    found = matched(name, _WORDS)
+    return _WORDS[found[0]](found[1]) if found else []
 
 
 def start(name: str, variant: int = 0) -> Components:

@@ -58,9 +58,27 @@ def place(name: str) -> Place:
 def known(name: str) -> Components | None:
     """Return the shortest rope known of a knot or link, or None.
 
-    A link is oriented as `starts.start` has it.
+    A code, pretzel, braid or so is the knot or link of the tables that its diagram is identified as, which
+    takes up to half a second. A link is oriented as `starts.start` has it.
+
+    >>> known("P(-2,3,7)")[0].shape == known("12n_242")[0].shape, known("dt:4 6 2") is None
+    (True, False)
     """
     where = place(name)
+    if (rope := _rope(where)) is None:
+        typed, turned = handed(name)
+        found = place(typed)
+        where = Place(found.family, found.knot, found.mirrored != turned)
+        rope = _rope(where)
+    if rope is None or where.family != "links":
+        return rope
+    with suppress(ValueError):  # another orientation may be that of the mirror image
+        return oriented_like(rope, start(name))
+    return None
+
+
+def _rope(where: Place) -> Components | None:
+    """Return the rope that the atlas has at a place, if it has one."""
     file = FOLDER.joinpath(f"{where.family}.zip")
     if not file.is_file():
         return None
@@ -69,12 +87,7 @@ def known(name: str) -> Components | None:
     if data is None:
         return None
     rope = archive.unpacked(data)
-    rope = mirror(rope) if where.mirrored else rope
-    if where.family != "links":
-        return rope
-    with suppress(ValueError):  # another orientation may be that of the mirror image
-        return oriented_like(rope, start(name))
-    return None
+    return mirror(rope) if where.mirrored else rope
 
 
 def drawn(name: str) -> Components:

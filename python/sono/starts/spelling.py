@@ -10,7 +10,7 @@ import difflib
 import re
 import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 _SIGNS = str.maketrans("−‐–♯", "---#", "$")
 """Signs as they are typeset."""
@@ -20,13 +20,14 @@ _MIRRORED = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 
-_KIND = r"(?<=[a-z])(['’]?s)?[\s_-]+(knot|link|rings)$"
+_KIND = r"(?<=[a-z])((?<!s)['’]?s)?[\s_-]+(knot|link|rings)$"
 """What kind of thing a name in words says it is."""
 
 _WORDS = {
     **{"trivial": "unknot", "trefoil": "3_1", "righthandedtrefoil": "3_1", "lefthandedtrefoil": "m3_1"},
     **{"figureeight": "4_1", "figure8": "4_1", "cinquefoil": "5_1", "threetwist": "5_2", "stevedore": "6_1"},
-    **{"granny": "3_1#3_1", "square": "3_1#m3_1"},
+    **{"overhand": "3_1", "pentafoil": "5_1", "septafoil": "7_1", "endless": "7_4", "carrickmat": "8_18"},
+    **{"granny": "3_1#3_1", "square": "3_1#m3_1", "reef": "3_1#m3_1"},
 }
 """Names in words, without spaces and hyphens."""
 
@@ -59,10 +60,11 @@ KNOWN = (
 
 @dataclass(frozen=True)
 class Part:
-    """A summand: its name, without what marks it as a mirror image, and whether it is one."""
+    """A summand: its name, without what marks it as a mirror image, whether it is one, and what was typed."""
 
     name: str
     mirrored: bool
+    typed: str = field(default="", compare=False)
 
     def __str__(self) -> str:
         """Give it as the tables do, with an m for a mirror image."""
@@ -79,7 +81,7 @@ def summands(name: str, mirrored: bool = False) -> list[Part]:
             texts.append(text)
     if len(texts) > 1:
         return [part for text in texts for part in summands(text, mirrored)]
-    text = texts[0].strip()
+    typed = text = texts[0].strip()
     while found := _MIRRORED.fullmatch(text):
         text, mirrored = (found["after"] or found["before"] or "").strip(), not mirrored
         if re.fullmatch(r"\([^#]*\)", text):
@@ -88,7 +90,7 @@ def summands(name: str, mirrored: bool = False) -> list[Part]:
         return summands(inner[1], mirrored)
     if word := _WORDS.get(_word(text)):
         return summands(word, mirrored)
-    return [Part(text, mirrored)]
+    return [Part(text, mirrored, typed)]
 
 
 def _word(name: str) -> str:
@@ -125,7 +127,7 @@ def unknown(part: Part, names: Sequence[str]) -> ValueError:
         hint = "braces have a 0 or 1 for each component after the first: L5a1{1}, L6a4{0,1}"
     else:
         hint = _series(name, names, m) or _near(name, names, m)
-    return ValueError(f"unknown knot {str(part)!r}: {hint}")
+    return ValueError(f"unknown knot {part.typed or str(part)!r}: {hint}")
 
 
 def _series(name: str, names: Sequence[str], m: str) -> str | None:
@@ -147,4 +149,8 @@ def _near(name: str, names: Sequence[str], m: str) -> str:
     digits = re.sub(r"\D", "", name)
     alike = {known.casefold(): known for known in (*names, *_WORDS) if re.sub(r"\D", "", known) == digits}
     near = difflib.get_close_matches(name.casefold(), alike, n=1, cutoff=0.6 if digits else 0.8)
-    return f"did you mean {m + alike[near[0]]!r}?" if near else f"known are {KNOWN}"
+    return (
+        f"did you mean {m + alike[near[0]]!r}?"
+        if near
+        else f"known are {KNOWN}; `sono start --list` has what is built in"
+    )

@@ -3,7 +3,7 @@
 const hex = (text) => [0, 2, 4].map((k) => parseInt(text.slice(k, k + 2), 16) / 255);
 const css = (colour) => `rgb(${colour.map((x) => Math.round(255 * x)).join(" ")})`;
 
-const COMPONENTS = ["0072b2", "e69f00", "009e73", "cc79a7", "56b4e9", "d55e00", "f0e442"].map(hex);
+const COMPONENTS = ["0072b2", "d55e00", "009e73", "e69f00", "cc79a7", "56b4e9", "7f7f7f"].map(hex);
 
 const stops = (text) => text.match(/.{6}/g).map(hex);
 const VIRIDIS = stops("440154472d7b3b528b2c728e21918c28ae805ec962addc30fde725");
