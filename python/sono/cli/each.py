@@ -51,6 +51,7 @@ def rope_of(source: "Source") -> "VertexFile":
     try:
         curve = sono.start(source.given, known=True)
     except ValueError as error:
-        cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one"
+        name = shlex.quote(source.given)
+        cure = f"`sono tighten {name} -o rope.txt` makes one, `sono search {name}` looks for the shortest"
         raise FormatError(f"{source}: {error}; {cure}") from error
     return as_file(source.given, list(curve), f"{source.name}, the rope of the atlas")

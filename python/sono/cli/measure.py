@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.option("--residual", is_flag=True, help="Add how far the forces in the rope are from balance.")
 @click.option("--all", "everything", is_flag=True, help="Add all descriptors of shape, in a time like n^2.")
 @options.close
-@options.table((*tables.DEFAULT, "dispersion", "r_s"))
+@options.table((*tables.DEFAULT, "dispersion", "r_s", "file"))
 def command(
     sources: tuple[str, ...],
     residual: bool,

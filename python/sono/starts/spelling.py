@@ -27,6 +27,7 @@ _WORDS = {
     **{"trivial": "unknot", "trefoil": "3_1", "righthandedtrefoil": "3_1", "lefthandedtrefoil": "m3_1"},
     **{"figureeight": "4_1", "figure8": "4_1", "cinquefoil": "5_1", "threetwist": "5_2", "stevedore": "6_1"},
     **{"granny": "3_1#3_1", "square": "3_1#m3_1"},
+    **{"conway": "11n_34", "kinoshitaterasaka": "11n_42", "kt": "11n_42"},
 }
 """Names in words, without spaces and hyphens."""
 
