@@ -32,13 +32,14 @@ def test_a_row_is_what_the_library_measures(folder: Path, sono: Sono) -> None:
 
 def test_standard_input(folder: Path, sono: Sono) -> None:
     piped = sono("measure", "-", input=(folder / "3_1.txt").read_text())
-    assert piped.stdout == sono("measure", "3_1.txt").stdout.replace("3_1", "stdin")
+    told = sono("measure", "3_1.txt").stdout
+    assert piped.stdout == told.replace("3_1.txt", "<stdin>").replace("3_1", "stdin")
 
 
 def test_tsv_elsewhere_than_on_a_terminal(sono: Sono) -> None:
     header, row = sono("measure", "3_1.txt").stdout.splitlines()
-    assert header.split("\t") == ["knot", "n", "dl", "l_p", "l_c", "l_a", "dispersion", "r_s"]
-    assert len(row.split("\t")) == 8
+    assert header.split("\t") == ["knot", "n", "dl", "l_p", "l_c", "l_a", "dispersion", "r_s", "file"]
+    assert len(row.split("\t")) == 9
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudoterminal")

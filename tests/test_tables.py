@@ -122,15 +122,38 @@ def test_markdown() -> None:
 def test_latex() -> None:
     assert table("latex", TREFOIL, FAILED) == (
         "% Ropelength is length over the RADIUS of the rope (R = 1).\n"
-        "\\begin{tabular}{|c|c|c|c|c|c|}\n"
+        "\\begin{tabular}{lrrrrr}\n"
         "\\hline\n"
         "knot & $n$ & $dl$ & $L_p$ & $L_c$ & $L_a=(4 L_p+L_c)/5$ \\\\\n"
         "\\hline\n"
-        "3\\_1 & 120 & 0.27243068 & 32.691681 & 32.940950 & 32.741534 \\\\\n"
+        "$3_1$ & 120 & 0.27243068 & 32.691681 & 32.940950 & 32.741534 \\\\\n"
         "a|b \\& 100\\%  & 60 & - & - & - & - \\\\\n"
         "\\hline\n"
         "\\end{tabular}\n"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("7_1", "$7_1$"),
+        ("m8_20.n480", "$m8_{20}$"),
+        ("8_18.dl0.05", "$8_{18}$"),
+        ("11n_34", "$11n_{34}$"),
+        ("3_1#m3_1.n960.best", r"$3_1\#m3_1$"),
+        ("6^2_13", "$6^2_{13}$"),
+        ("T(3,-7)", "$T(3,-7)$"),
+        (r"L6a4{0,1}", r"$L6a4\{0,1\}$"),
+        ("my_rope", r"my\_rope"),
+        ("3_1#mine", r"3\_1\#mine"),
+    ],
+)
+def test_latex_typesets_names(name: str, shown: str) -> None:
+    assert table("latex", {"knot": name}, columns=("knot",)).splitlines()[5] == shown + r" \\"
+
+
+def test_latex_of_no_rows_is_nothing() -> None:
+    assert table("latex") == ""
 
 
 def test_latex_escapes_names() -> None:

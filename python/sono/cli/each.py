@@ -82,5 +82,6 @@ def rope_of(source: "Source") -> "VertexFile":
     source.read()  # says what is wrong with it, if it is no name at all
     if doubt := starts.doubt(source.given):
         raise FormatError(f"{source}: {doubt}")
-    cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one"
+    name = shlex.quote(source.given)
+    cure = f"`sono tighten {name} -o rope.txt` makes one, `sono search {name}` looks for the shortest"
     raise FormatError(f"{source}: the atlas has no rope of {source.given!r}; {cure}")

@@ -25,7 +25,7 @@ OF_CHAINS = ("knot", "file", "components", "n", "length", *(key for key in table
 @click.option("--residual", is_flag=True, help="Add how far the forces in the rope are from balance.")
 @click.option("--all", "everything", is_flag=True, help="Add all descriptors of shape, in a time like n^2.")
 @options.close
-@options.table((*tables.DEFAULT, "dispersion", "r_s"), "measure")
+@options.table((*tables.DEFAULT, "dispersion", "r_s", "file"), "measure")
 def command(
     sources: tuple[str, ...],
     residual: bool,

@@ -28,6 +28,7 @@ _WORDS = {
     **{"figureeight": "4_1", "figure8": "4_1", "cinquefoil": "5_1", "threetwist": "5_2", "stevedore": "6_1"},
     **{"overhand": "3_1", "pentafoil": "5_1", "septafoil": "7_1", "endless": "7_4", "carrickmat": "8_18"},
     **{"granny": "3_1#3_1", "square": "3_1#m3_1", "reef": "3_1#m3_1"},
+    **{"conway": "11n_34", "kinoshitaterasaka": "11n_42", "kt": "11n_42"},
 }
 """Names in words, without spaces and hyphens."""
 
