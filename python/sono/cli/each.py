@@ -2,7 +2,7 @@
 
 import re
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from sono.cli.streams import complain
@@ -33,29 +33,41 @@ def each(
     failed = False
     for one in given:
         heard: list[Sequence[str]] = []
-        for source in curves(one, close):
-            try:
-                heard.append(work(source) or ())
-            except FormatError as error:
-                failed = True
-                complain(str(error))
-        for message in _once(heard):
-            tell(message)
+        wrong: list[Sequence[str]] = []
+        sources = curves(one, close)
+        try:
+            for source in sources:
+                try:
+                    heard.append(work(source) or ())
+                except FormatError as error:
+                    wrong.append([str(error)])
+        finally:
+            alike = len(wrong) == len(sources) and len(once(wrong)) == 1
+            for message in once(wrong) if alike else [error for (error,) in wrong]:
+                complain(message)
+            for message in once(heard):
+                tell(message)
+        failed |= bool(wrong)
     return int(failed)
 
 
-def _once(heard: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Give what is said of the curves of a file, what is said of several in one message."""
+def once(heard: Sequence[Sequence[str]]) -> list[str]:
+    """Return what is said of the curves of a file: what is said of several in one message."""
     if len(heard) == 1:
-        yield from heard[0]
-        return
+        return list(heard[0])
     kinds: dict[str, list[str]] = {}
     for messages in heard:
         for kind, message in {_NUMBER.sub("", message): message for message in reversed(messages)}.items():
             kinds.setdefault(kind, []).append(message)
-    for said in kinds.values():
-        count = f"all {len(heard)}" if len(said) == len(heard) else f"{len(said)} of {len(heard)}"
-        yield f"{said[0]} (in {count} curves of the file)" if len(said) > 1 else said[0]
+    return [_counted(said, len(heard)) for said in kinds.values()]
+
+
+def _counted(said: Sequence[str], curves: int) -> str:
+    """Give the first of messages that say the same, and of how many curves."""
+    if len(said) == 1:
+        return said[0]
+    many = f"all {curves}" if len(said) == curves else f"{len(said)} of {curves}"
+    return f"{said[0]} (in {many} curves of the file)"
 
 
 def file_of(source: "Source", command: str, does: str) -> "VertexFile":
