@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 Value = str | int | float | None
 
@@ -116,7 +117,9 @@ def key_of(name: str) -> str:
     try:
         return _KEYS[name.strip().casefold()]
     except KeyError:
-        raise ValueError(f"unknown column {name!r}; the columns are: {', '.join(COLUMNS)}") from None
+        near = get_close_matches(name.strip().casefold(), COLUMNS, 1)
+        meant = f"; did you mean {near[0]!r}?" if near else f"; the columns are: {', '.join(COLUMNS)}"
+        raise ValueError(f"unknown column {name!r}{meant}") from None
 
 
 def column_of(name: str) -> Column | None:
