@@ -254,7 +254,7 @@ def test_trajectories_are_refused_with_what_writes_others(name: str, data: bytes
         (["identify", "--columns", "writhe"], "`sono measure` has it"),
         (["measure", "--columns", "n,determinant"], "`sono identify` has it"),
         (["measure", "--columns", "published"], "there are: knot, file, n"),
-        (["measure", "--columns", "rg"], "is it radius_of_gyration?"),
+        (["measure", "--columns", "rg"], "did you mean radius_of_gyration?"),
         (["measure", "--columns", "writh"], "is it writhe"),
     ],
 )

@@ -259,5 +259,9 @@ def test_unknown_names_are_answered_with_the_known_ones() -> None:
         ValueError, match="unknown table format 'xls'; the formats are: table, tsv, csv, jsonl, json, md"
     ):
         writer("xls", DEFAULT, io.StringIO())
-    with pytest.raises(ValueError, match="unknown column 'L'; the columns are: knot, n, components, dl, l_p"):
-        writer("table", ["L"], io.StringIO())
+    with pytest.raises(
+        ValueError, match="unknown column 'xyz'; the columns are: knot, n, components, dl, l_p"
+    ):
+        writer("table", ["xyz"], io.StringIO())
+    with pytest.raises(ValueError, match=r"unknown column 'l_q'; did you mean l_[pac]"):
+        writer("table", ["l_q"], io.StringIO())

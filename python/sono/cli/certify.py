@@ -53,9 +53,9 @@ def command(
     """Prove that each curve's type has a ropelength of at most so much: L_c, rounded up.
 
     A FILE is taken as it is, of any scale; - is standard input. A NAME is the rope that the atlas has of the
-    knot, with edges of 0.2; a rope with finer edges, tightened with --dl 0.02, proves a bound worth quoting. R is
-    held down by a bend or a pair of vertices: component:vertex, both counted from 0. Where the
-    edges are too long for a proof, the message says by how much, and where.
+    knot, with edges of 0.2; a rope tightened with --dl 0.02 proves a bound worth quoting. R is held down by a
+    bend or a pair of vertices: component:vertex, both counted from 0. Where the edges are too long for a
+    proof, the message says by how much, and where.
 
     A certificate is of a file of plain rows x y z, whose SHA-256 it has. With -o the vertices of all else are
     written as FOLDER/NAME.txt, next to NAME.certificate.json. --check believes nothing that a certificate

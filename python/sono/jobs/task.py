@@ -255,7 +255,7 @@ def _header(job: Order, file: VertexFile, tight: Tight, status: str) -> list[str
 
 
 def _disagreement(found: Counter[str]) -> str:
-    """Say what to do where the best of several ends was met but once: it need not be the shortest there is."""
+    """Say what to do where the best of several ends was met but once: there may be a shorter one."""
     if len(found) < 2 or found[min(found, key=float)] > 1:
         return ""
     return "; these disagree, and the best was met but once: `sono search` tries more shapes"

@@ -126,7 +126,7 @@ def _nearest(name: str) -> str:
     letters = {re.sub(r"\W|_", "", known): key for known, key in _KEYS.items()}
     meant = get_close_matches(re.sub(r"\W|_", "", name.casefold()), letters, 3, 0.7)
     keys = list(dict.fromkeys(letters[word] for word in meant))
-    return f"is it {' or '.join(keys)}?" if keys else f"the columns are: {', '.join(COLUMNS)}"
+    return f"did you mean {' or '.join(keys)}?" if keys else f"the columns are: {', '.join(COLUMNS)}"
 
 
 def column_of(name: str) -> Column | None:

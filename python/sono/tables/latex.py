@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from sono.tables.base import CAPTION, TableWriter, plain, rounded
 from sono.tables.columns import Row
 
-
 KNOTS = ("knot", "other_knot")
 """Columns of names that are typeset."""
 
@@ -61,7 +60,7 @@ class Latex(TableWriter):
 
 
 def typeset(name: str) -> str:
-    """Return a name without what files add to it: as mathematics if it is of a table, or a torus type, or a sum."""
+    """Return a name without what files add to it, as mathematics if it is of a table, a torus or a sum."""
     name = plain(name)
     if not re.fullmatch(rf"{_PRIME}(?:#{_PRIME})*", name):
         return _latex(name)
