@@ -276,3 +276,10 @@ def test_csv_has_empty_cells_and_tsv_dashes(sono: Sono) -> None:
 def test_an_l_for_a_1_has_the_nearest_name() -> None:
     with pytest.raises(ValueError, match="did you mean '3_1'"):
         package.start("3_l")
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_ring_of_uneven_bonds_is_left_alone(seed: int) -> None:
+    ring = trefoil(60) + 0.1 * np.random.default_rng(seed).normal(size=(60, 3))
+    for first in range(0, 60, 7):
+        assert not ends_apart(np.roll(ring, first, axis=0))

@@ -11,6 +11,10 @@ FAR = 4.0
 LONGEST = 1.5
 """The edge that closes an open chain is longer than so many mean edges, and times the longest other edge."""
 
+RING = 1.25
+"""The edge between the ends of a ring is at most so many times as long as the longest other one, or `LONGEST`
+times as long as the median one."""
+
 STEPS = 2.5
 """Jumps through a periodic box are at least so many times as long as the longest other edge; so a polygon
 whose edges are about equal has none."""
@@ -32,10 +36,10 @@ def closing_edge(vertices: Floats) -> float:
 def ends_apart(vertices: Floats) -> bool:
     """Tell whether the ends of a component (n, 3) are farther apart than neighbours are.
 
-    The edge that closes a ring is the longest one at most, or 1.5 times the median one, as bonds vary.
+    The edge that closes a ring is one of its bonds, and these vary.
     """
     edges = np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1)
-    return bool(edges[-1] > max(edges[:-1].max(), LONGEST * np.median(edges)))
+    return bool(edges[-1] > max(RING * edges[:-1].max(), LONGEST * np.median(edges)))
 
 
 @np.errstate(over="ignore", invalid="ignore")

@@ -38,7 +38,9 @@ def gathered(box: Box | None, chains: Sequence[Floats]) -> tuple[list[Floats], l
     notes = [MOVED] if shifts.any() else []
     if _unclear((low + high) / 2 + shifts, (high - low) / 2, box.periodic):
         notes.append(UNCLEAR)
-    return [rows + shift @ box.edges for rows, shift in zip(chains, shifts, strict=True)], notes
+    pairs = zip(chains, shifts, strict=True)
+    # What is not moved keeps every bit, as a zero does not keep its sign.
+    return [rows + shift @ box.edges if shift.any() else rows for rows, shift in pairs], notes
 
 
 def together(box: Box | None, chains: Sequence[Chain]) -> tuple[list[Chain], list[str]]:

@@ -19,6 +19,8 @@ double or single precision, or to the digits of a file. An edge so short beside 
 _FORTRAN = re.compile(r"([+-]?\d*\.?\d*)[dq]([+-]?\d+)|([+-]?\d*\.\d*)([+-]\d{3})", re.ASCII | re.IGNORECASE)
 """1.0D+00, 1.0Q+00 and 1.0-100: Fortran leaves the letter out where an exponent has three digits."""
 
+RING = "--close leaves it alone"
+"""How a note on a ring ends, where chains are closed."""
 
 SHOWN = 12
 """Lines that a message names at most."""
@@ -119,7 +121,7 @@ class VertexFile:
         _refuse_jumps(name, strands)
         pairs = [strand.closed(close) for strand in strands]
         closed = [strand for strand, _ in pairs]
-        notes = [*raw.notes, *(note for _, note in pairs if note)]
+        notes = [*raw.notes, *_brief([note for _, note in pairs if note])]
         own = [strand.own for strand in closed]
         vertices, lines = [it.vertices for it in closed], [it.lines for it in closed]
         return cls(name, vertices, lines, raw.key, notes, raw.comments, own if any(own) else ())
@@ -173,7 +175,7 @@ class _Strand:
         asked = close in WAYS
         if not self.is_open and not (self.may_be and (asked or (close and self.chain))):
             ring = f"{self.name}:{last}: the chain that ends here is a ring, as line {first} is a bond away"
-            return self, f"{ring}: --close leaves it alone" if asked and self.ends else None
+            return self, f"{ring}: {RING}" if asked and self.ends else None
         if close is None:
             raise FormatError.at(
                 self.name,
@@ -192,6 +194,14 @@ class _Strand:
             f"with {len(added)} more vertices"
         )
         return replace(self, vertices=np.vstack([self.vertices, added]), lines=lines, own=own), note
+
+
+def _brief(notes: Sequence[str]) -> list[str]:
+    """Return notes on some components; of many which are rings, the first."""
+    rings = [note for note in notes if note.endswith(RING)]
+    others = [note for note in notes if not note.endswith(RING)]
+    more = f" (and {len(rings) - 1} more chains of this curve)" if len(rings) > 1 else ""
+    return others + [note + more for note in rings[:1]]
 
 
 def _refuse_twins(name: str, vertices: NDArray[np.float64], lines: NDArray[np.int64]) -> None:
