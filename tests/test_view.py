@@ -162,6 +162,8 @@ def test_no_ring_of_the_borromean_ones_is_seen_from_its_edge() -> None:
     for ring in facing(list(package.start("Borromean", known=True))):
         normal = np.linalg.svd(ring - ring.mean(axis=0))[2][2]
         assert 0.4 < abs(normal[2]) < 0.75
+    (frame,) = turned([package.start("Borromean", known=True)])
+    assert np.linalg.det(frame) == pytest.approx(1)  # a picture is no mirror image
     widest = np.vstack(facing(list(package.start("3_1", known=True))))
     assert np.ptp(widest, axis=0).argmin() == 2
 

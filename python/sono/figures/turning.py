@@ -17,7 +17,7 @@ EVEN = 1.05
 """Where all three radii of gyration are within such a ratio, no side is the widest: rings at right angles,
 as the Borromean ones are, hide each other when seen along an axis, and are seen along the axes' diagonal."""
 
-_DIAGONAL = np.array([[1, -1, 0], [-1, -1, 2], [1, 1, 1]]) / np.sqrt([[2], [6], [3]])
+_DIAGONAL = np.array([[-1, 1, 0], [-1, -1, 2], [1, 1, 1]]) / np.sqrt([[2], [6], [3]])
 
 
 def turned(curves: Sequence[Components]) -> list[Floats]:
