@@ -57,7 +57,7 @@ class OneCore:
         _, number, function, args = heappop(self.waiting)
         self.trials += function is attempt
         found = self.results[number] = function(*args)
-        if isinstance(found, Minimum) and found.tight:
+        if isinstance(found, Minimum) and found.converged:
             self.best = min(self.best, found.length)
             if Search().confirmed(found, self.source) and found.length <= self.enough:
                 raise EnoughError

@@ -198,10 +198,25 @@ def exit_table() -> str:
     return table(("exit code", "meaning"), EXIT)
 
 
+def torus_types() -> str:
+    """List the torus types of the atlas, in short where q goes from p to a largest one."""
+    atlas = resources.files("sono").joinpath("data", "atlas", "torus.tsv").read_text(encoding="utf-8")
+    types = [(int(p), int(q)) for p, q in re.findall(r"^T\((\d+),(\d+)\)", atlas, re.MULTILINE)]
+    several = {p: sorted(q for first, q in types if first == p) for p, q in types if p != q}
+    texts = []
+    for p, along in several.items():
+        whole = along == [*range(p, along[-1] + 1)]
+        shown = [f"`T({p},{q})`" for q in ((p, along[-1]) if whole else along)]
+        texts.append((" to " if whole else ", ").join(shown))
+    squares = ", ".join(str(p) for p, q in types if p == q and p not in several)
+    return f"{'; '.join(texts)}; and `T(p,p)` for p = {squares}."
+
+
 REGIONS: dict[str, Callable[[], str]] = {
     "exit codes": exit_table,
     "formats": formats_table,
     "settings": settings_table,
+    "torus types": torus_types,
 }
 
 

@@ -170,7 +170,7 @@ class Reader:
     def _examples(self, text: str, where: str, names: dict[str, Any]) -> None:
         test = doctest.DocTestParser().get_doctest(text, names, where, where, 0)
         failures: list[str] = []
-        doctest.DocTestRunner(_Checker()).run(test, out=failures.append, clear_globs=False)
+        doctest.DocTestRunner(_Checker(), verbose=False).run(test, out=failures.append, clear_globs=False)
         names |= test.globs
         assert not failures, "".join(failures)
 

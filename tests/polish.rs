@@ -258,6 +258,7 @@ fn ropes_are_valid_and_tight_at_the_limits_of_all_settings() {
         ("mu_factor", [0.01, 0.9]),
         ("mu_power", [1., 2.]),
         ("centred", [0.1, 100.]),
+        ("balanced", [0.001, 100.]),
         ("contact_range", [0.1, 100.]),
         ("least_contact_range", [0.001, 1.]),
         ("longest_way", [0.001, 0.1]),

@@ -133,3 +133,13 @@ def test_where_nothing_is_sharper(folder: Path, sono: Sono) -> None:
     result = sono("certify", "--sharp", "circle.txt")
     assert (result.exit_code, result.stderr.count("\n")) == (1, 1)
     assert "circle.txt: no sharper bound" in result.stderr
+
+
+def test_alone_it_says_what_it_needs(tmp_path: Path) -> None:
+    alone = shutil.copy(check_thickness.__file__, tmp_path)
+    found = subprocess.run([sys.executable, alone, "a", "b"], capture_output=True, text=True, cwd=tmp_path)
+    assert found.returncode == 1
+    assert (
+        found.stderr
+        == "check_thickness.py: needs check_certificate.py beside it; copy both into one folder\n"
+    )

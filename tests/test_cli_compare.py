@@ -28,14 +28,15 @@ def test_the_differences_have_their_signs(folder: Path, sono: Sono) -> None:
     assert link["published"] == pytest.approx(8 * math.pi)
     assert (link["kind"], chiral["kind"]) == ("exact", "bound")
     counted, coarse = result.stderr.splitlines()
-    assert coarse.endswith("the error of the limit exceeds the difference: 8_4")
-    assert counted == "sono: of 3 rows L_a is at most the published value in 2, L_c in 1, the limit in 1"
+    assert coarse.endswith("the error of the limit exceeds the difference: 8_4, m3_1")
+    assert counted == "sono: of 2 rows L_a is at most the published value in 1, L_c in 1, the limit in 1"
 
 
 def test_a_name_of_nothing_published(sono: Sono) -> None:
     result = sono("compare", "-", "--columns", "published,kind", input="knot\tL_a\nT(7,3)\t80\nmine\t1.5\n")
     assert result.stdout == "published\tkind\n-\t-\n-\t-\n"
-    assert result.stderr == "sono: of 2 rows no ropelength is published under the name they have\n"
+    assert result.stderr.startswith("sono: no ropelength is published under the names T(7,3), mine; `sono id")
+    assert result.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -84,20 +85,41 @@ def test_each_published_value_on_its_own(sono: Sono) -> None:
     assert (wrong.exit_code, "--all or --published" in wrong.stderr) == (2, True)
 
 
+def _claims(sono: Sono, table: str) -> list[str]:
+    lines = sono("compare", "-", input=table).stderr.splitlines()
+    return [line for line in lines if "shorter than" in line or "estimate of the limit" in line]
+
+
 def test_what_was_checked_of_a_record(sono: Sono) -> None:
-    table = "knot\tL_a\nT(4,4)\t77.3\nT(-25,26)\t1340\n8_4\t71.4\nT(5,5)\t110\n"
-    claims = [
-        line for line in sono("compare", "-", input=table).stderr.splitlines() if "shorter than" in line
-    ]
+    rows = (
+        "T(4,4)\t77.3\t77.4\nT(-25,26)\t1340\t1341\n8_4\t71.4\t71.4\nT(5,5)\t108.9\t110\nT(4,4)\t77.3\t77.4\n"
+    )
+    claims = _claims(sono, f"knot\tL_a\tL_c\n{rows}")
     assert [line.split(";")[0] for line in claims] == [
         "sono: shorter than Klotz 2026: T(4,4)",
         "sono: shorter than Klotz, Maldonado 2021: T(-25,26)",
     ]
-    coarse = sono("compare", "-", input="knot\tn\tL_a\tL_c\n6^3_3\t90\t50.23\t51.62\n")
-    assert "too coarse to tell" in coarse.stderr
-    assert "shorter than" not in coarse.stderr
     assert "DataTightLinksKlotz26.txt of July 2026" in claims[0]
     assert "77.977" in claims[0]
+
+
+def test_only_a_rope_is_shorter(sono: Sono) -> None:
+    head = "knot\tn\tl_a\tl_c\tl_c_fine\tn_fine\n"
+    # 58.0060 is printed of L6a4, and 109.00 of T(5,5): what rounds to that is not below it.
+    assert not _claims(sono, f"{head}L6a4\t4640\t58.00598\t58.00674\t-\t-\n")
+    assert not _claims(sono, f"{head}L6a4\t290\t57.9922\t58.18986\t-\t-\n")
+    assert not _claims(sono, f"{head}T(5,5)\t5000\t108.996\t108.997\t-\t-\n")
+    below = _claims(
+        sono, f"{head}T(5,5)\t5000\t108.98\t109.001\t-\t-\nT(5,5)\t900\t108\t109.3\t109.1\t1800\n"
+    )
+    assert [line.split(";")[0] for line in below] == [
+        "sono: the estimate of the limit is below Klotz 2026: T(5,5)"
+    ]
+
+
+def test_of_what_is_exact_no_limit_is_below(sono: Sono) -> None:
+    result = sono("compare", "-", input="knot\tn\tl_a\tl_c\nHopf\t251\t25.12755\t25.14876\n")
+    assert (result.exit_code, result.stderr) == (0, "")
 
 
 def test_the_sources_are_listed(sono: Sono) -> None:
@@ -154,10 +176,18 @@ def test_a_pipe_from_measure(folder: Path, sono: Sono) -> None:
     assert result.stdout.splitlines()[1].startswith("3_1\t69\t")
 
 
-@pytest.mark.parametrize("name", ["8_4.tight", "m8_4.n359", "M8_4", "8_4.n359.best2", "8_4"])
+@pytest.mark.parametrize(
+    "name", ["8_4.tight", "m8_4.n359", "M8_4", "8_4.n359.best2", "8_4.dl0.05", "8_4.dl1", "8_4"]
+)
 def test_files_names_are_understood(sono: Sono, name: str) -> None:
     result = sono("compare", "-", "--columns", "published", input=f"knot\tL_a\n{name}\t71.45\n")
     assert result.stdout == "published\n71.4704\n"
+
+
+def test_measure_says_which_file_so_that_its_type_is_compared(folder: Path, sono: Sono) -> None:
+    formats.write("8_20.txt", starts.start("9_42"))
+    result = sono("compare", "-", input=sono("measure", "8_20.txt").stdout)
+    assert "8_20: the curve in 8_20.txt is of another type than 8_20" in result.stderr
 
 
 def test_a_table_to_compare_with_needs_lengths(folder: Path, sono: Sono) -> None:
@@ -251,6 +281,88 @@ def test_the_limit_of_the_trefoil_is_within_its_error() -> None:
         for found, error in zip((once, twice), errors, strict=True):
             assert abs(float(found["limit"] or 0) - 32.742934477) < error
         assert n > 480 or errors[1] < 0.02 * errors[0]
+
+
+@pytest.mark.parametrize(
+    ("knot", "limit", "levels"),
+    [
+        # n, L_p and L_c of tight ropes on edges of 0.2, 0.1, 0.05 and 0.025, and of 0.0125 for L6a4.
+        (
+            "Hopf",
+            8 * math.pi,
+            [
+                (125, 25.09050056, 25.19865905),
+                (251, 25.12224766, 25.14876404),
+                (503, 25.13012719, 25.13669542),
+                (1005, 25.13208636, 25.13372758),
+            ],
+        ),
+        (
+            "L6a4",
+            58.00604,
+            [
+                (290, 57.94278527, 58.18986032),
+                (580, 57.99082789, 58.05152699),
+                (1160, 58.00214389, 58.01728174),
+            ],
+        ),
+        (
+            "6^3_3",
+            50.3376,
+            [
+                (251, 50.28356396, 50.49908335),
+                (503, 50.32491623, 50.37775906),
+                (1007, 50.33401046, 50.34707921),
+            ],
+        ),
+        (
+            "T(2,4)",
+            40.00922,
+            [
+                (200, 39.97674203, 40.13991817),
+                (400, 40.00147761, 40.04185990),
+                (800, 40.00724478, 40.01726792),
+            ],
+        ),
+        (
+            "4_1",
+            42.08582,
+            [
+                (210, 42.04700506, 42.22220591),
+                (421, 42.07626904, 42.11946199),
+                (842, 42.08344843, 42.09421379),
+            ],
+        ),
+        (
+            "10_139",
+            72.87669,
+            [
+                (364, 72.81281624, 73.12559258),
+                (729, 72.86184307, 72.93935785),
+                (1457, 72.87298088, 72.89232759),
+            ],
+        ),
+    ],
+    ids=lambda value: value if isinstance(value, str) else None,
+)
+def test_beads_in_grooves_are_within_the_error(
+    knot: str, limit: float, levels: list[tuple[int, float, float]]
+) -> None:
+    for n, l_p, l_c in levels:
+        found = published.extrapolated({"knot": knot, "n": n, "l_a": (4 * l_p + l_c) / 5, "l_c": l_c})
+        assert abs(float(found["limit"] or 0) - limit) <= float(found["limit_error"] or 0)
+
+
+@pytest.mark.parametrize("family", ["knots", "links", "composites", "torus"])
+def test_one_level_of_every_family_covers_what_two_tell(family: str) -> None:
+    rows = [row for row in tables.read(str(ATLAS.with_name(f"{family}.tsv"))) if row["n_fine"]]
+    finer = [row for row in rows if float(row["n_fine"] or 0) > 3 * float(row["n"] or 0)]
+    for row in finer:
+        twice = published.extrapolated(row)
+        once = published.extrapolated({key: row[key] for key in ("knot", "n", "l_a", "l_c")})
+        apart = abs(float(once["limit"] or 0) - float(twice["limit"] or 0))
+        assert apart <= float(once["limit_error"] or 0), row["knot"]
+    assert len(finer) > 10
 
 
 def test_one_level_estimates_what_two_levels_tell() -> None:

@@ -8,7 +8,8 @@ import pytest
 from conftest import Sono
 
 import sono as package
-from sono import formats, starts, tables
+from sono import formats, starts
+from sono.cli import options
 
 
 @pytest.fixture
@@ -33,12 +34,13 @@ def test_a_row_for_each_file(curves: Path, sono: Sono) -> None:
 
 
 def test_invariants_are_columns(sono: Sono) -> None:
-    result = sono("identify", "Hopf.txt", "--format", "jsonl", "--columns", ",".join(tables.COLUMNS))
+    result = sono(
+        "identify", "Hopf.txt", "--format", "jsonl", "--columns", ",".join(options.FILLED["identify"])
+    )
     row = json.loads(result.stdout)
     found = package.identify("Hopf")
     assert (row["determinant"], row["signature"], row["linking"], row["components"]) == (2, -1, "1", 2)
     assert (row["homfly"], row["alexander"]) == (found.homfly, "t - 1")
-    assert row["l_p"] is None
 
 
 def test_pd_codes(curves: Path, sono: Sono) -> None:

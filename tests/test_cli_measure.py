@@ -10,19 +10,21 @@ from conftest import Sono, Spawn
 
 import sono as package
 from sono import formats, tables
+from sono.cli import options
 
 ROWS = "0 0 0\n2 0 0\n2 2 1\n0 2 0\n"
 
 
 def test_a_row_is_what_the_library_measures(folder: Path, sono: Sono) -> None:
     result = sono(
-        "measure", "3_1.txt", "Hopf.txt", "--format", "jsonl", "--columns", ",".join(tables.COLUMNS)
+        *("measure", "3_1.txt", "Hopf.txt", "--format", "jsonl"),
+        *("--columns", ",".join(options.FILLED["measure"])),
     )
     assert (result.exit_code, result.stderr) == (0, "")
     for name, line in zip(["3_1", "Hopf"], result.stdout.splitlines(), strict=True):
         row = json.loads(line)
         assert (row["knot"], row["file"]) == (name, f"{name}.txt")
-        assert row["status"] is row["sweeps"] is None
+        assert None not in row.values()
         measures = package.measure(formats.read(folder / f"{name}.txt").components)
         for key in ("n", "components", "dl", "l_p", "l_c", "l_a", "r_s", "min_rad", "length"):
             assert row[key] == getattr(measures, key)
@@ -30,13 +32,14 @@ def test_a_row_is_what_the_library_measures(folder: Path, sono: Sono) -> None:
 
 def test_standard_input(folder: Path, sono: Sono) -> None:
     piped = sono("measure", "-", input=(folder / "3_1.txt").read_text())
-    assert piped.stdout == sono("measure", "3_1.txt").stdout.replace("3_1", "stdin")
+    told = sono("measure", "3_1.txt").stdout
+    assert piped.stdout == told.replace("3_1.txt", "<stdin>").replace("3_1", "stdin")
 
 
 def test_tsv_elsewhere_than_on_a_terminal(sono: Sono) -> None:
     header, row = sono("measure", "3_1.txt").stdout.splitlines()
-    assert header.split("\t") == ["knot", "n", "dl", "l_p", "l_c", "l_a", "dispersion", "r_s"]
-    assert len(row.split("\t")) == 8
+    assert header.split("\t") == ["knot", "n", "dl", "l_p", "l_c", "l_a", "dispersion", "r_s", "file"]
+    assert len(row.split("\t")) == 9
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudoterminal")

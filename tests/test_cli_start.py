@@ -106,3 +106,13 @@ def test_variants_are_numbers_of_any_size(sono: Sono, name: str) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     if name != "T(2,4)":
         assert sono("start", name, f"--variant=-{10**20}").exit_code == 0
+
+
+def test_without_its_table_a_knot_may_have_a_known_rope(sono: Sono, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str) -> None:
+        raise ImportError
+
+    monkeypatch.setattr("sono.starts.knotinfo.knot_row", missing)
+    assert "; or --known, for the rope of the atlas" in sono("start", "11n_34").stderr
+    assert sono("start", "11n_34", "--known").exit_code == 0
+    assert "--known" not in sono("start", "13n_5110").stderr.split("Error: ")[1]

@@ -136,7 +136,7 @@ def test_tight_knots(name: str) -> None:
     assert found.total_curvature > 4 * math.pi  # Fary and Milnor
     assert found.acn > int(name.split("_")[0])  # seen from no side with fewer
     assert abs(found.writhe) <= found.acn
-    assert found.contacts > 0
+    assert found.contacts
     if name == "4_1":
         assert found.writhe == pytest.approx(0, abs=0.02)
 

@@ -206,13 +206,16 @@ def test_a_chain_that_is_not_wrapped_stays(size: float) -> None:
     assert curve.doubts() == []
 
 
-def test_components_are_unwrapped_each_on_its_own() -> None:
-    content = boxed(np.vstack([KNOT, KNOT + 5]), np.eye(3) * 1.5 * np.ptp(KNOT, axis=0).max())
+@pytest.mark.parametrize(("sides", "unclear"), [(1.3, True), (3, False)])
+def test_components_are_unwrapped_and_told_where_images_are_unclear(sides: float, unclear: bool) -> None:
+    content = boxed(
+        np.vstack([KNOT, KNOT + 0.4 * np.ptp(KNOT, axis=0)]), np.eye(3) * sides * np.ptp(KNOT, axis=0).max()
+    )
     head, comment, *rows = content.splitlines()
     rows = [f"{row} {1 + i // len(KNOT)}" for i, row in enumerate(rows)]
     (curve,) = parsed("\n".join([head, comment.replace("pos:R:3", "pos:R:3:molecule:I:1"), *rows]))
     assert all(np.allclose(part - part[0], KNOT - KNOT[0]) for part in curve.components)
-    assert any("check how these are linked" in note for note in curve.doubts())
+    assert any("depends on the image" in note for note in curve.doubts()) == unclear
 
 
 def test_what_a_box_cannot_tell_is_refused() -> None:

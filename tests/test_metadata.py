@@ -39,6 +39,26 @@ def test_the_changelog_begins_with_what_is_not_released() -> None:
     assert len({*versions}) == len(versions)
 
 
+def test_what_is_cited_is_what_the_citation_file_says() -> None:
+    page, citation = text("docs/cite.md"), text("CITATION.cff")
+    fields = dict(
+        re.findall(r"^ +(\w+) += \{+(.*?)\}+,?$", page, re.MULTILINE)
+    )  # of the paper, which is last
+    (program, authors), (_, of_paper) = (
+        (block, re.findall(r"family-names: (.*)\n +given-names: (.*)", block))
+        for block in citation.split("references:")
+    )
+    assert fields["author"] == " and ".join(map(", ".join, of_paper))
+    assert f"title: {fields['title']}\n" in citation
+    assert f"year: {fields['year']}\n" in citation
+    own = dict(re.findall(r"^ +(\w+) += \{+(.*?)\}+,?$", page.split("## The paper")[0], re.MULTILINE))
+    assert not authors
+    assert f"  - name: {own['author']}\n" in program
+    assert f"\nversion: {own['version']}\n" in program
+    assert f"\ntitle: {own['title']}\n" in program
+    assert f"\ndate-released: {own['year']}-" in program
+
+
 def test_keywords_agree() -> None:
     zenodo = json.loads(text(".zenodo.json"))
     assert all(f"  - {keyword}\n" in text("CITATION.cff") for keyword in zenodo["keywords"])

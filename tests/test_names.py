@@ -13,6 +13,7 @@ from sono.invariants.polynomials import alexander
 from sono.starts import names, start, table
 from sono.starts.braids import braid
 from sono.starts.drawing import mirror
+from sono.starts.spelling import summands
 from sono.starts.torus import chain, torus
 
 KNOTS = Path(__file__).parent.parent / "knots"
@@ -167,3 +168,17 @@ def test_files_are_the_starts_to_six_decimals(name: str) -> None:
     for block, component in zip(body.split("\n\n"), start(name), strict=True):
         rows = [row.split() for row in block.splitlines()]
         np.testing.assert_allclose(np.array(rows, np.float64), component, rtol=0, atol=5.01e-7)
+
+
+@pytest.mark.parametrize(
+    ("name", "knot"),
+    [
+        ("Conway knot", "11n_34"),
+        ("mConway", "m11n_34"),
+        ("Kinoshita–Terasaka", "11n_42"),
+        ("Kinoshita-Terasaka knot", "11n_42"),
+        ("KT", "11n_42"),
+    ],
+)
+def test_famous_mutants(name: str, knot: str) -> None:
+    assert [str(part) for part in summands(name)] == [knot]

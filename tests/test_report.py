@@ -2,6 +2,9 @@
 
 import json
 import re
+import subprocess
+import sys
+import time
 from collections.abc import Callable, Iterator
 from html.parser import HTMLParser
 from itertools import pairwise, product
@@ -290,6 +293,31 @@ def test_jobs_make_the_same(sono: Sono, folder: Path) -> None:
     one, two = ({path.relative_to(folder / site): path.read_bytes() for path in (folder / site).rglob("*.*")}
                 for site in ("site1", "site2"))  # fmt: skip
     assert one == two
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks for processes in /proc")
+def test_no_process_outlives_a_report_that_is_killed(folder: Path) -> None:
+    run = "from sono.cli import run; run()"
+    command = [sys.executable, "-c", run, "report", "composites", "-o", "site", "-j", "2", "-q"]
+    with subprocess.Popen(command, cwd=folder) as report:
+        wait_for(lambda: list((folder / "site").rglob("*.txt")))
+        workers = children(report.pid)
+        report.kill()
+    assert len(workers) >= 2
+    wait_for(lambda: not any(Path(f"/proc/{worker}/cwd").exists() for worker in workers))
+
+
+def children(process: int) -> list[str]:
+    """Return the processes that one has begun."""
+    return Path(f"/proc/{process}/task/{process}/children").read_text().split()
+
+
+def wait_for(what: Callable[[], object], seconds: float = 120) -> None:
+    end = time.monotonic() + seconds
+    while not what():
+        assert time.monotonic() < end
+        time.sleep(0.1)
 
 
 # The drawings

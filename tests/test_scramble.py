@@ -5,6 +5,7 @@ import pytest
 
 from sono.invariants import fingerprint
 from sono.invariants.crossings import crossings
+from sono.naming import verify
 from sono.starts import start
 from sono.starts.scramble import scramble
 from sono.starts.torus import chain
@@ -25,6 +26,17 @@ def test_scramble_follows_the_seed() -> None:
     one, same, other = (scramble(start("3_1"), seed, swirls=5)[0] for seed in (1, 1, 2))
     np.testing.assert_array_equal(one, same)
     assert one.shape != other.shape or not np.allclose(one, other)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name", ["7_4", "8_1", "9_42", "m10_97", "10_123", "11n_34", "12a_803", "L9a5", "3_1#8_1"]
+)
+def test_what_is_drawn_thin_is_scrambled_too(name: str) -> None:
+    drawn = start(name)
+    scrambled = scramble(drawn, seed=3, swirls=6)
+    assert verify(drawn, scrambled).verdict == "same"
+    assert len(crossings(scrambled).sign) > 8
 
 
 def test_scramble_refuses_a_curve_that_touches_itself() -> None:

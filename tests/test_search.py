@@ -14,7 +14,7 @@ import pytest
 
 from sono import _core, measure, starts
 from sono._core import CurveError, PanicError
-from sono.curve import Components, packed
+from sono.curve import Components, Curve, packed
 from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.jobs.workers import Threads
 from sono.searching import minima, search, trials
@@ -101,7 +101,7 @@ def test_a_trial_that_fails_is_a_failed_trial(monkeypatch: pytest.MonkeyPatch, s
         monkeypatch.setattr(trial, engine, failing(getattr(_core, engine)))
     found = run("3_1", 3)
     assert (found.trials, found.failed, found.changed) == (3, 1, 0)
-    assert found.minima[0].tight
+    assert found.minima[0].converged
 
 
 def test_what_cannot_be_refined_or_finished_leaves_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,13 +122,13 @@ def test_what_cannot_be_refined_or_finished_leaves_the_rest(monkeypatch: pytest.
 def test_refined_and_finished_ropes_are_tight() -> None:
     minimum = refine(attempt(source("3_1"), 0))
     assert minimum
-    assert minimum.tight
+    assert minimum.converged
     assert (minimum.residual or 0) <= 1e-8
     assert minimum.length == pytest.approx(32.7429, abs=1e-3)
     assert measure(minimum.curve).dl == pytest.approx(trials.FINE_EDGE, rel=0.01)
     fine = finish(minimum, 480)
     assert fine
-    assert fine.tight
+    assert fine.converged
     assert (fine.variant, measure(fine.curve).n) == (minimum.variant, 480)
     # README; the beads may lie in another groove
     assert fine.length == pytest.approx((4 * 32.739828 + 32.755154) / 5, abs=3e-5)
@@ -140,7 +140,7 @@ def test_beads_seated_anew_make_ropes_shorter() -> None:
     after = [reseat(minimum) for minimum in before]
     assert len(after) == 3
     for one, two in zip(before, after, strict=True):
-        assert two.tight
+        assert two.converged
         assert measure(two.curve).n == measure(one.curve).n
         assert (1 - 1e-3) * one.length < two.length <= one.length
         assert (two.variant, two.hits, two.met) == (one.variant, one.hits, one.met)
@@ -153,7 +153,7 @@ def test_the_shortest_known_rope_is_found() -> None:
     found = run("6_1", 16)
     best = found.minima[0]
     assert best.length < 56.7058  # ACPR 2011; single greedy runs end 1.5 % above
-    assert best.tight
+    assert best.converged
     assert [minimum.length for minimum in found.minima] == sorted(minimum.length for minimum in found.minima)
     assert found.trials == 16
     met = sum(minimum.hits for minimum in found.minima) + sum(shape.hits for shape in found.shapes)
@@ -211,7 +211,7 @@ def test_a_curve_is_searched_by_its_scrambles(knot: str) -> None:
 def test_ropes_of_another_type_are_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     right = refine(attempt(source("3_1"), 0))
     assert right
-    wrong = replace(right, curve=[component * [1, 1, -1] for component in right.curve])
+    wrong = replace(right, curve=Curve([component * [1, 1, -1] for component in right.curve]))
     monkeypatch.setattr(search, "refine", lambda *_: wrong)
     found = run("3_1", 2)
     assert (found.minima, found.changed) == ([], 1)
@@ -233,7 +233,7 @@ def test_a_shorter_shape_is_another() -> None:
 
 @pytest.mark.parametrize(("anyway", "refined"), [(0, [1]), (1, [1]), (2, [1, 2])])
 def test_what_cannot_be_the_shortest_is_not_refined(anyway: int, refined: list[int]) -> None:
-    curve = starts.start("3_1")
+    curve = Curve(starts.start("3_1"))
     known = minima.Minimum(0, 30, True, 0, curve, [])
     shapes = [Shape(i, 30 * (1 + i * search.BLUR / 1.5), np.full(3, float(i)), curve) for i in (1, 2)]
     found, begun = Search(minima=[known], shapes=shapes), list[int]()
@@ -280,7 +280,7 @@ def test_a_search_anneals_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
     # Variants 2, -2 and -6.
     assert [anneals.count(trials.GENTLE_ANNEAL), anneals.count(trials.WARM_ANNEAL)] == [9, 3]
     assert (found.trials, found.failed, found.changed) == (12, 0, 0)
-    assert found.minima[0].tight
+    assert found.minima[0].converged
     assert found.minima[0].length == pytest.approx(32.743, abs=5e-3)
 
 
@@ -305,7 +305,7 @@ class Made:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, seconds: float = 0) -> None:
         self.seconds, self.active, self.most = seconds, 0, 0
         self.lock = threading.Lock()
-        self.curve = starts.start("3_1")
+        self.curve = Curve(starts.start("3_1"))
         trefoil = source("3_1").type
         for module in (search, trials):
             monkeypatch.setattr(module, "fingerprint", lambda _: trefoil)
@@ -330,7 +330,10 @@ class Made:
 
     def refine(self, shape: Shape, watch: trials.Watch = trials.unwatched) -> minima.Minimum:
         self.work(10 * self.seconds)
-        length, curve = round(shape.length, 1), [shape.radii[0] * component for component in self.curve]
+        length, curve = (
+            round(shape.length, 1),
+            Curve([shape.radii[0] * component for component in self.curve]),
+        )
         return minima.Minimum(shape.variant, length, True, 0, curve, [shape.radii])
 
 
@@ -431,7 +434,7 @@ def test_trials_that_are_cut_leave_what_was_found() -> None:
     assert found.trials == 3
     assert begun[:4] == 4 * ["attempt"]
     assert set(begun[4:]) == {"refine", "reseat"}
-    assert found.minima[0].tight
+    assert found.minima[0].converged
 
 
 def test_a_limit_while_shapes_are_refined_keeps_the_minima() -> None:
@@ -450,7 +453,7 @@ def test_a_limit_while_shapes_are_refined_keeps_the_minima() -> None:
     found = Search()
     for _ in found.run(source("3_1"), 16, submit):
         pass
-    assert [minimum.tight for minimum in found.minima] == [True]
+    assert [minimum.converged for minimum in found.minima] == [True]
 
 
 def test_restored_minima_are_measured_again() -> None:
@@ -462,7 +465,7 @@ def test_restored_minima_are_measured_again() -> None:
     state["minima"][0] |= {"curve": packed(curve), "length": 20.0}
     again = Search.restore(state)
     damaged = next(minimum for minimum in again.minima if minimum.variant == found.minima[0].variant)
-    assert not damaged.tight
+    assert not damaged.converged
     assert damaged.length == pytest.approx(measure(curve).l_a or measure(curve).l_p)
     assert damaged.length > 33
     for key, value in {"minima": 3, "shapes": [{}], "refining": [[1]], "more": 1}.items():

@@ -51,7 +51,7 @@ def test_tsv_and_csv_keep_every_digit() -> None:
     assert table("csv", TREFOIL, FAILED) == (
         "knot,n,dl,l_p,l_c,l_a\n"
         "3_1,120,0.2724306812345678,32.69168123456789,32.94095,32.741534\n"
-        "a|b & 100% ,60,-,-,-,-\n"
+        "a|b & 100% ,60,,,,\n"
     )
 
 
@@ -122,15 +122,38 @@ def test_markdown() -> None:
 def test_latex() -> None:
     assert table("latex", TREFOIL, FAILED) == (
         "% Ropelength is length over the RADIUS of the rope (R = 1).\n"
-        "\\begin{tabular}{|c|c|c|c|c|c|}\n"
+        "\\begin{tabular}{lrrrrr}\n"
         "\\hline\n"
         "knot & $n$ & $dl$ & $L_p$ & $L_c$ & $L_a=(4 L_p+L_c)/5$ \\\\\n"
         "\\hline\n"
-        "3\\_1 & 120 & 0.27243068 & 32.691681 & 32.940950 & 32.741534 \\\\\n"
+        "$3_1$ & 120 & 0.27243068 & 32.691681 & 32.940950 & 32.741534 \\\\\n"
         "a|b \\& 100\\%  & 60 & - & - & - & - \\\\\n"
         "\\hline\n"
         "\\end{tabular}\n"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("7_1", "$7_1$"),
+        ("m8_20.n480", "$m8_{20}$"),
+        ("8_18.dl0.05", "$8_{18}$"),
+        ("11n_34", "$11n_{34}$"),
+        ("3_1#m3_1.n960.best", r"$3_1\#m3_1$"),
+        ("6^2_13", "$6^2_{13}$"),
+        ("T(3,-7)", "$T(3,-7)$"),
+        (r"L6a4{0,1}", r"$L6a4\{0,1\}$"),
+        ("my_rope", r"my\_rope"),
+        ("3_1#mine", r"3\_1\#mine"),
+    ],
+)
+def test_latex_typesets_names(name: str, shown: str) -> None:
+    assert table("latex", {"knot": name}, columns=("knot",)).splitlines()[5] == shown + r" \\"
+
+
+def test_latex_of_no_rows_is_nothing() -> None:
+    assert table("latex") == ""
 
 
 def test_latex_escapes_names() -> None:
@@ -236,5 +259,9 @@ def test_unknown_names_are_answered_with_the_known_ones() -> None:
         ValueError, match="unknown table format 'xls'; the formats are: table, tsv, csv, jsonl, json, md"
     ):
         writer("xls", DEFAULT, io.StringIO())
-    with pytest.raises(ValueError, match="unknown column 'L'; the columns are: knot, n, components, dl, l_p"):
-        writer("table", ["L"], io.StringIO())
+    with pytest.raises(
+        ValueError, match="unknown column 'xyz'; the columns are: knot, n, components, dl, l_p"
+    ):
+        writer("table", ["xyz"], io.StringIO())
+    with pytest.raises(ValueError, match=r"unknown column 'l_q'; did you mean l_[pac]"):
+        writer("table", ["l_q"], io.StringIO())

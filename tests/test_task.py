@@ -1,6 +1,7 @@
 """Jobs of a batch: rows as they come, checkpoints as they should be, disks full at the worst time."""
 
 import errno
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -225,3 +226,10 @@ def test_the_simplest_curves(folder: Path, name: str) -> None:
     assert result.trouble is None
     assert result.row
     assert result.row["l_p"] == pytest.approx(2 * np.pi, rel=0.01)
+
+
+def test_ends_that_disagree_are_told() -> None:
+    assert "sono search" in task._disagreement(Counter({"95.1": 2, "94.7": 1, "101.2": 4}))
+    assert task._disagreement(Counter({"95.1": 1, "94.7": 2})) == ""
+    assert task._disagreement(Counter({"94.7": 1})) == ""
+    assert task._disagreement(Counter()) == ""

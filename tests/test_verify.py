@@ -52,7 +52,7 @@ def test_what_is_its_own_mirror_image_is_the_same(name: str) -> None:
         ("Hopf", "Whitehead", "proven", "linking numbers"),
         ("3_1#3_1", "3_1#m3_1", "proven", "signatures"),
         ("11n_34", "0_1", "proven", "HOMFLY polynomials"),
-        ("11n_34", "11n_42", "proven", "names"),
+        ("11n_34", "11n_42", "proven", "names in the table"),
         ("11n_34", "m11n_42", "proven", "HOMFLY polynomials"),
         ("T(3,7)", "T(2,13)", "proven", "signatures"),
         ("P(3,5,7)", "8_19", "invariants", "signatures"),

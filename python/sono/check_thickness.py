@@ -23,7 +23,10 @@ from typing import Any, NamedTuple, TypeAlias
 if __package__:
     from sono import check_certificate as exact
 else:
-    import check_certificate as exact  # type: ignore[import-not-found,no-redef]
+    try:
+        import check_certificate as exact  # type: ignore[import-not-found,no-redef]
+    except ModuleNotFoundError:
+        sys.exit("check_thickness.py: needs check_certificate.py beside it; copy both into one folder")
 
 Point: TypeAlias = exact.Point
 RefusedError = exact.RefusedError

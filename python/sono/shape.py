@@ -1,16 +1,16 @@
 """What the shape of a curve is told by, besides its ropelength: descriptors. On the ground floor, by `curve`.
 
-May import nothing of sono but the core, `curve`, and what results have in common.
+May import nothing of sono but the core, `curve`, `strands`, and what results have in common.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sono import _core
+from sono import _core, strands
 from sono.curve import Components, CurveLike, Floats, Measures, as_components, measure
 from sono.records import Record
 
@@ -42,6 +42,8 @@ class Descriptors(Record):
     `contacts` are the pairs of vertices that are 2 R_s apart, within 0.005 %, along no arc of their component
     shorter than pi MinRad less its longest edge.
 
+    Of an open chain all this is of its own edges and of the vertices between them, and `contacts` is None.
+
     Sources: K. Klenin, J. Langowski, Biopolymers 54 (2000) 307 for the writhe of polygons; J. Milnor, Ann. of
     Math. 52 (1950) 248 for total curvature.
 
@@ -60,16 +62,36 @@ class Descriptors(Record):
     total_curvature: float
     total_torsion: float
     max_curvature: float
-    contacts: int
+    contacts: int | None
 
 
-def descriptors(vertices: CurveLike) -> Descriptors:
-    """Describe the shape of a curve, in a time that grows with n^2: see `sono.descriptors`."""
+def descriptors(vertices: CurveLike, closed: bool | Sequence[bool] = True) -> Descriptors:
+    """Describe the shape of a curve, in a time that grows with n^2: see `sono.descriptors`.
+
+    Its components may be open chains, all or some: `closed` says which are not.
+    """
     curve = as_components(vertices)
-    own, between, crossings = _core.writhe(curve)
-    measures = measure(curve)
-    diameter, contacts = _pairs(curve, measures)
-    gyration = _gyration(curve)
+    rings = [closed] * len(curve) if isinstance(closed, bool) else list(closed)
+    if all(rings):
+        measures = measure(curve)
+        return _described(curve, rings, _core.writhe(curve), _pairs(curve, measures))
+    for c, chain in enumerate(curve):
+        steps = np.diff(chain, axis=0)
+        if len(chain) < 2 or not np.isfinite(chain).all() or not steps.any(axis=1).all():
+            raise ValueError(f"chain {c} needs two vertices, finite ones, and no two equal neighbours")
+    return _described(curve, rings, strands.writhe(curve, rings), (_diameter(curve), None))
+
+
+def _described(
+    curve: Components,
+    rings: Sequence[bool],
+    crossed: tuple[float, float, float],
+    pairs: tuple[float, int | None],
+) -> Descriptors:
+    own, between, crossings = crossed
+    diameter, contacts = pairs
+    chains = list(zip(curve, rings, strict=True))
+    gyration = _gyration(chains)
     return Descriptors(
         writhe=own + between,
         self_writhe=own,
@@ -77,29 +99,30 @@ def descriptors(vertices: CurveLike) -> Descriptors:
         radius_of_gyration=math.sqrt(sum(gyration)),
         gyration=gyration,
         diameter=diameter,
-        total_curvature=sum(float(_turned(component).sum()) for component in curve),
-        total_torsion=sum(map(_torsion, curve)),
-        max_curvature=1 / measures.min_rad,
+        total_curvature=sum(float(_turned(*_corners(*chain)).sum()) for chain in chains),
+        total_torsion=sum(_torsion(*chain) for chain in chains),
+        max_curvature=max(float(_bends(*strands.corners(*chain)).max(initial=0)) for chain in chains),
         contacts=contacts,
     )
 
 
 def curvature(component: Floats) -> Floats:
     """Return the curvatures (n,) at the vertices, 1/Rad: 2 tan(theta/2) over the shorter edge at a corner."""
-    after = np.roll(component, -1, axis=0) - component
-    before = np.roll(after, 1, axis=0)
+    return _bends(*strands.corners(component, True))
+
+
+def _bends(before: Floats, after: Floats) -> Floats:
     tangent = np.linalg.norm(np.cross(before, after), axis=1)
-    lengths = np.linalg.norm(after, axis=1)
+    one, other = np.linalg.norm(before, axis=1), np.linalg.norm(after, axis=1)
     # tan(theta/2) = sin theta / (1 + cos theta)
-    half = tangent / (lengths * np.roll(lengths, 1) + (before * after).sum(axis=1))
-    curvatures: Floats = 2 * half / np.minimum(lengths, np.roll(lengths, 1))
+    half = tangent / (one * other + (before * after).sum(axis=1))
+    curvatures: Floats = 2 * half / np.minimum(one, other)
     return curvatures
 
 
-def _gyration(curve: Components) -> tuple[float, float, float]:
+def _gyration(chains: Sequence[tuple[Floats, bool]]) -> tuple[float, float, float]:
     """Return the eigenvalues of the second moments of a wire about its centre."""
-    start = np.concatenate(curve)
-    end = np.concatenate([np.roll(component, -1, axis=0) for component in curve])
+    start, end = map(np.concatenate, zip(*(strands.edges(*chain) for chain in chains), strict=True))
     weight = np.linalg.norm(end - start, axis=1)
     weight /= weight.sum()
     centre = weight @ (start + end) / 2
@@ -109,42 +132,51 @@ def _gyration(curve: Components) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _edges(component: Floats) -> tuple[Floats, Floats]:
-    """Return the unit vectors of the edges before and after each vertex."""
-    after = np.roll(component, -1, axis=0) - component
-    after = after / np.linalg.norm(after, axis=1)[:, None]
-    return np.roll(after, 1, axis=0), after
+def _corners(chain: Floats, closed: bool) -> tuple[Floats, Floats]:
+    """Return the unit vectors of the edges before and after each vertex at which a chain turns."""
+    before, after = strands.corners(chain, closed)
+    return before / np.linalg.norm(before, axis=1)[:, None], after / np.linalg.norm(after, axis=1)[:, None]
 
 
-def _turned(component: Floats) -> Floats:
+def _turned(before: Floats, after: Floats) -> Floats:
     """Return the angle by which a polygon turns at each vertex."""
-    before, after = _edges(component)
     sines = np.linalg.norm(np.cross(before, after), axis=1)
     angles: Floats = np.arctan2(sines, np.sum(before * after, axis=1))
     return angles
 
 
-def _torsion(component: Floats) -> float:
+def _torsion(chain: Floats, closed: bool) -> float:
     """Return the sum of the angles between planes that follow each other."""
-    planes = np.cross(*_edges(component))[_turned(component) > STRAIGHT]
-    following = np.roll(planes, -1, axis=0)
+    corners = _corners(chain, closed)
+    planes = np.cross(*corners)[_turned(*corners) > STRAIGHT]
+    planes, following = strands.edges(planes, closed)
     sines = np.linalg.norm(np.cross(planes, following), axis=1)
     return float(np.arctan2(sines, np.abs(np.sum(planes * following, axis=1))).sum())
 
 
 def _pairs(curve: Components, measures: Measures) -> tuple[float, int]:
     """Return the largest distance of vertices, and how many pairs are in contact."""
-    points = np.concatenate(curve)
-    points = points - points.mean(axis=0)
-    squares = np.sum(points**2, axis=1)
     largest, contacts = 0.0, 0
-    for rows in np.array_split(np.arange(len(points)), len(points) ** 2 // BLOCK + 1):
-        apart = squares[rows, None] + squares - 2 * points[rows] @ points.T
+    for rows, apart in _squares(curve):
         largest = max(largest, float(apart.max()))
         near = np.argwhere(apart <= (2 * measures.r_s * TOUCHING) ** 2)
         pairs = np.stack([rows[near[:, 0]], near[:, 1]], axis=1)
         contacts += int(_apart(curve, pairs[pairs[:, 0] < pairs[:, 1]]).sum())
     return math.sqrt(largest), contacts
+
+
+def _diameter(curve: Components) -> float:
+    """Return the largest distance of vertices."""
+    return math.sqrt(max(float(apart.max()) for _, apart in _squares(curve)))
+
+
+def _squares(curve: Components) -> Iterator[tuple[NDArray[np.int64], Floats]]:
+    """Give for some vertices after the other their squared distances from all."""
+    points = np.concatenate(curve)
+    points = points - points.mean(axis=0)
+    squares = np.sum(points**2, axis=1)
+    for rows in np.array_split(np.arange(len(points)), len(points) ** 2 // BLOCK + 1):
+        yield rows, squares[rows, None] + squares - 2 * points[rows] @ points.T
 
 
 def _apart(curve: Components, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -48,6 +48,13 @@ impl Barrier {
         (z - self.mu * self.weight(t)[1]) / t.g
     }
 
+    /// By how much (z g - mu w)/g rises to second order where a term takes this course and z stays.
+    pub fn rise(&self, t: &Term, z: f64, [b, c]: [f64; 2]) -> f64 {
+        let within = t.sign > 0. && t.g < self.hat;
+        let turn = if within { (b / self.hat).powi(2) } else { 0. };
+        self.stiffness(t, z) * c - self.mu * turn / t.g
+    }
+
     /// z g - mu w, which is 0 in the end.
     pub fn excess(&self, t: &Term, z: f64) -> f64 {
         z * t.g - self.mu * self.weight(t)[0]

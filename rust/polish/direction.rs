@@ -24,6 +24,12 @@ impl Direction {
         self.lengths.iter_mut().zip(&other.lengths).for_each(|(l, d)| *l += factor * d);
     }
 
+    /// Multiplies it by `factor`.
+    pub fn scale(&mut self, factor: f64) {
+        self.beads.iter_mut().for_each(|v| *v *= factor);
+        self.lengths.iter_mut().for_each(|l| *l *= factor);
+    }
+
     /// The scalar product.
     pub fn dot(&self, other: &Self) -> f64 {
         dot(&self.beads, &other.beads)

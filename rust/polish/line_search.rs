@@ -1,6 +1,6 @@
 //! How far along a Newton step constraints, the barrier function and the strands allow to go.
 //!
-//! A step moves all beads straight, from where the rope is to where it shall be. **No strand passes another**
+//! A step, on its arc too, moves all beads straight, from where the rope is to where it shall be. **No strand passes another**
 //! by the theorem of [`crate::passage`], whose conditions are looked at on each step by themselves. They need
 //! not be concluded from the constraints, which do not imply all of them: that edges and contacts keep what
 //! they have is known along the whole step, as their courses are quadratic, but of the least length of an
@@ -13,6 +13,7 @@
 //! Between steps nothing moves: a new beginning scales the best rope, which was one of these.
 
 use super::barrier::longest_step;
+use super::direction::Direction;
 use super::newton::Step;
 use super::problem::{Multipliers, Surroundings, Unknowns};
 use super::settings::Settings;
@@ -23,20 +24,38 @@ use crate::passage::margin;
 /// Rounding errors of the barrier function, as a share of it.
 const NOISE: f64 = 1e-14;
 const MOST_HALVINGS: usize = 40;
+/// Arcs so short are not looked for.
+const LEAST_ARC: f64 = 1e-3;
+
+/// The share `a` of a step, straight or on_arc, and where it leads.
+struct Way {
+    a: f64,
+    on_arc: bool,
+    to: Direction,
+    rope: Unknowns,
+    merit: f64,
+    margin: f64,
+}
 
 impl Polish {
-    /// Goes as far along a step as possible; returns whether that is anywhere.
+    /// Goes as far along a step as possible, on its arc where that lowers the barrier function more than a
+    /// part of the straight way; returns whether that is anywhere.
     pub(super) fn take(&mut self, step: &Step, around: &Surroundings) -> bool {
-        let longest = step.to.longest_way();
-        let Some((a, rope)) = self.search(step, around, (self.way / longest).min(1.)) else {
+        let straight = self.search(step, false, around);
+        let is_whole = straight.as_ref().is_some_and(|way| way.a == 1.);
+        let on_arc = if is_whole { None } else { self.search(step, true, around) };
+        let ways = [straight, on_arc].into_iter().flatten();
+        let lowest = ways.min_by(|a, b| a.merit.total_cmp(&b.merit));
+        let Some(Way { a, on_arc, to, rope, margin, .. }) = lowest else {
             return false;
         };
-        self.z = self.multipliers(a, step, around);
+        self.passages.may(Some(margin));
+        self.z = self.multipliers(&to, &step.dz(a, on_arc), around);
         self.rope = rope;
         self.newton.learn(a);
         let thinnest = 0.01 * self.rope.l.iter().copied().fold(f64::MAX, f64::min).powi(2);
         let longest_way = self.settings.longest_way;
-        self.way = (4. * a * longest).clamp(thinnest.min(longest_way), longest_way);
+        self.way = (4. * to.longest_way()).clamp(thinnest.min(longest_way), longest_way);
         let now = Best::new(self.rope.curve.clone());
         if now.l_p < self.best.l_p {
             self.best = now;
@@ -44,42 +63,63 @@ impl Polish {
         true
     }
 
-    /// The share of the step, at most `most`, that lowers the barrier function, and where it leads.
-    fn search(&mut self, step: &Step, around: &Surroundings, most: f64) -> Option<(f64, Unknowns)> {
+    /// The largest share of the step that lowers the barrier function.
+    fn search(&mut self, step: &Step, on_arc: bool, around: &Surroundings) -> Option<Way> {
         let Surroundings { terms, bystanders } = around;
-        let Settings { most_used, least_descent, .. } = self.settings;
         let barrier = self.barrier();
-        let Self { rope, contacts, passages, least, .. } = self;
-        let before = rope.curve.vertices();
-        let pairs = contacts.iter().chain(bystanders).copied();
+        let pairs = self.contacts.iter().chain(bystanders).copied();
         let merit = |rope: &Unknowns| barrier.merit(rope, pairs.clone());
-        let others = bystanders.iter().map(|&pair| rope.contact(pair));
-        let all = terms.iter().copied().chain(others);
-        let mut a = all.fold(most, |a, t| a.min(longest_step(&t, &step.to, most_used)));
-        let highest = merit(rope);
+        let others = bystanders.iter().map(|&pair| self.rope.contact(pair));
+        let mut a = self.longest_share(step, on_arc, terms.iter().copied().chain(others));
+        let highest = merit(&self.rope);
         for _ in 0..MOST_HALVINGS {
-            let moved = rope.moved(a, &step.to);
-            // False where a bend's course, cubic in l, has led out after all: the merit is NaN.
-            let is_lower =
-                merit(&moved) <= highest + least_descent * a * step.slope + NOISE * highest.abs();
-            let found = || margin(before, &moved.curve, least, pairs.clone(), 2.);
-            if is_lower && passages.may(found()) {
-                return Some((a, moved));
+            let to = step.to(a, on_arc);
+            let rope = self.rope.moved(1., &to);
+            let least_descent = self.settings.least_descent * a * step.slope;
+            // NaN where a bend's course, cubic in l, has led out after all.
+            let merit = merit(&rope);
+            if merit <= highest + least_descent + NOISE * highest.abs() {
+                let before = self.rope.curve.vertices();
+                match margin(before, &rope.curve, &self.least, pairs.clone(), 2.) {
+                    Some(margin) => return Some(Way { a, on_arc, to, rope, merit, margin }),
+                    None => self.passages.refused += 1,
+                }
             }
             a *= 0.5;
         }
         None
     }
 
-    /// The multipliers after the share `a` of a step. Each one goes by itself: were the step as short as
+    /// The largest share of the step on which no bead goes too far and no term is used up. On an arc it is a
+    /// little less than that.
+    fn longest_share(
+        &self,
+        step: &Step,
+        on_arc: bool,
+        terms: impl Iterator<Item = Term> + Clone,
+    ) -> f64 {
+        let most_used = self.settings.most_used;
+        let mut a = 1.;
+        loop {
+            let to = step.to(a, on_arc);
+            let most = (self.way / to.longest_way()).min(1.);
+            let share = terms.clone().fold(most, |a, t| a.min(longest_step(&t, &to, most_used)));
+            if share == 1. || !on_arc || a < LEAST_ARC {
+                return a * share;
+            }
+            a *= share.sqrt().clamp(0.5, 0.95);
+        }
+    }
+
+    /// The multipliers after a way and their change on it. Each one goes by itself: were the step as short as
     /// suits all, the first to reach 0 among thousands would hold up the others for dozens of steps.
-    fn multipliers(&self, a: f64, step: &Step, around: &Surroundings) -> Multipliers {
+    fn multipliers(&self, to: &Direction, dz: &Multipliers, around: &Surroundings) -> Multipliers {
         let (barrier, Settings { most_used, multiplier_range, .. }) =
             (self.barrier(), self.settings);
-        let moved = self.z.map_with(&step.dz, |z, dz| (z + a * dz).max((1. - most_used) * z));
+        let moved = self.z.map_with(dz, |z, dz| (z + dz).max((1. - most_used) * z));
         around.terms.map_with(&moved, |t, z| {
-            let [b, c] = t.course(&step.to);
-            let force = barrier.force(&Term { g: t.g + a * (b + a * c), ..*t });
+            let [b, c] = t.course(to);
+            let force = barrier.force(&Term { g: t.g + b + c, ..*t });
             z.clamp(force / multiplier_range, force * multiplier_range)
         })
     }
@@ -91,7 +131,7 @@ mod tests {
 
     use glam::DVec3;
 
-    use super::super::direction::Direction;
+    use super::super::newton::Change;
     use super::*;
     use crate::geometry::curve::Curve;
 
@@ -102,6 +142,13 @@ mod tests {
         Polish::new(&circle, 40, false, 0, Settings::default()).unwrap()
     }
 
+    /// A step whose arc is straight.
+    fn straight(polish: &Polish, to: Direction, dz: Multipliers) -> Step {
+        let to_nowhere = Direction::lengthening(&polish.rope.curve, 0.);
+        let arc = Change { to: to_nowhere, dz: dz.map(|_| 0.) };
+        Step { straight: Change { to, dz }, arc, slope: 0. }
+    }
+
     #[test]
     fn a_step_on_which_edges_vanish_is_not_taken() {
         // All beads go through the centre to the other side, where all constraints are as they were.
@@ -109,10 +156,12 @@ mod tests {
         let around = Surroundings { terms: polish.rope.terms(&[]), bystanders: vec![] };
         let mut to = Direction::lengthening(&polish.rope.curve, 0.);
         to.beads = polish.rope.curve.vertices().iter().map(|v| -2. * *v).collect();
-        let step = Step { to, dz: polish.z.map(|_| 0.), slope: 0. };
-        let (share, _) = polish.search(&step, &around, 1.).unwrap();
+        let step = straight(&polish, to, polish.z.map(|_| 0.));
+        polish.way = f64::MAX;
+        let share = polish.search(&step, false, &around).unwrap().a;
         assert!(share < 0.06, "edges of {} of their length are too short", 1. - 2. * share);
-        assert!(polish.passages.refused > 0 && polish.passages.shown == 1);
+        assert!(polish.passages.refused > 0 && polish.take(&step, &around));
+        assert_eq!(polish.passages.shown, 1);
     }
 
     #[test]
@@ -121,8 +170,8 @@ mod tests {
         let around = polish.look_around();
         let mut dz = polish.z.map(|z| 0.5 * z);
         dz.edges[0] = -1e9;
-        let step = Step { to: Direction::lengthening(&polish.rope.curve, 0.), dz, slope: -1. };
-        let after = polish.multipliers(0.5, &step, &around);
+        let step = straight(&polish, Direction::lengthening(&polish.rope.curve, 0.), dz);
+        let after = polish.multipliers(&step.to(0.5, true), &step.dz(0.5, true), &around);
         for (k, (before, after)) in polish.z.iter().zip(after.iter()).enumerate() {
             let share = if k == 0 { 1. - polish.settings.most_used } else { 1.25 };
             assert!((after - share * before).abs() < 1e-12 * before, "{k}: {before} {after}");

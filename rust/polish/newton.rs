@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::barrier::Barrier;
 use super::direction::Direction;
-use super::matrix::Matrix;
-use super::problem::{Multipliers, Surroundings, Unknowns};
+use super::matrix::{Bordered, Matrix};
+use super::problem::{Multipliers, Surroundings, Terms, Unknowns};
 use crate::geometry::neighbours::Pair;
 
 /// What is always added to the diagonal, in units of 1/l, since rigid motions are free.
@@ -23,12 +23,37 @@ const HOPELESS_SHIFT: f64 = 1e12;
 /// come and go.
 const SPARE: f64 = 1.3;
 
-/// A step of the unknowns and the multipliers.
-pub struct Step {
+/// A change of the unknowns and the multipliers.
+pub struct Change {
     pub to: Direction,
     pub dz: Multipliers,
-    /// Derivative of the barrier function along `to`.
+}
+
+/// A Newton step, and the arc whose tangent it is.
+pub struct Step {
+    pub straight: Change,
+    /// What is added, times the square of the share that is taken, on the arc.
+    pub arc: Change,
+    /// Derivative of the barrier function at the start.
     pub slope: f64,
+}
+
+impl Step {
+    /// The way of the share `a` of the step, straight or on the arc.
+    pub fn to(&self, a: f64, on_arc: bool) -> Direction {
+        let mut to = self.straight.to.clone();
+        if on_arc {
+            to.add(a, &self.arc.to);
+        }
+        to.scale(a);
+        to
+    }
+
+    /// The change of the multipliers on it.
+    pub fn dz(&self, a: f64, on_arc: bool) -> Multipliers {
+        let more = if on_arc { a * a } else { 0. };
+        self.straight.dz.map_with(&self.arc.dz, |dz, arc| a * dz + more * arc)
+    }
 }
 
 /// What passes from one step to the next.
@@ -81,7 +106,35 @@ impl Newton {
         };
         let dz = terms
             .map_with(z, |t, z| barrier.force(t) - z - barrier.stiffness(t, *z) * t.course(&to)[0]);
-        Some(Step { slope: -downhill.dot(&to), to, dz })
+        let slope = -downhill.dot(&to);
+        let straight = Change { to, dz };
+        let arc = self.arc(&bordered, terms, z, barrier, &straight)?;
+        Some(Step { straight, arc, slope })
+    }
+
+    /// What makes an arc of a step: to third order, all that the perturbed conditions are off by falls to
+    /// 1 - a of it on the share a, but for what is not quadratic in bends. The factor is that of the step.
+    fn arc(
+        &mut self,
+        matrix: &Bordered,
+        terms: &Terms,
+        z: &Multipliers,
+        barrier: Barrier,
+        straight: &Change,
+    ) -> Option<Change> {
+        let Change { to: along, dz } = straight;
+        let forces = terms.map_with(z, |t, z| barrier.rise(t, *z, t.course(along)));
+        let off = terms.map_with(dz, |t, dz| dz * t.course(along)[0] / t.g);
+        let off = off.map_with(&forces, |off, rise| off + rise);
+        let mut rest = along.clone();
+        rest.scale(0.);
+        for ((t, dz), off) in terms.iter().zip(dz.iter()).zip(off.iter()) {
+            t.turn(*dz, along, &mut rest);
+            t.push(-off, &mut rest);
+        }
+        let to = self.matrix.solve_again(matrix, &rest)?;
+        let dz = terms.map_with(z, |t, z| -barrier.stiffness(t, *z) * t.course(&to)[0]);
+        Some(Change { to, dz: dz.map_with(&off, |dz, off| dz - off) })
     }
 
     /// Takes note that the share `a` of the last step was taken.
@@ -102,8 +155,11 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
+    use super::super::barrier::longest_step;
+    use super::super::problem::left_over;
     use super::super::term::Term;
     use super::*;
+    use crate::beads::COARSE;
     use crate::geometry::curve::Curve;
 
     const BARRIER: Barrier = Barrier { mu: 0.1, hat: 4. };
@@ -197,14 +253,33 @@ mod tests {
             gradient
         }
 
+        /// By how much the perturbed conditions are off on the share `a` of a step, against 1 - a of what
+        /// they were off by.
+        fn off(&self, step: &Step, a: f64, on_arc: bool) -> f64 {
+            let pairs: Vec<_> = self.around.terms.contacts.iter().map(Term::pair).collect();
+            let off_after = |to: &Direction, z: &Multipliers| {
+                let rope = self.rope.moved(1., to);
+                let terms = rope.terms(&pairs);
+                let left = left_over(&rope.curve, &terms, z);
+                let products = terms.map_with(z, |t, z| BARRIER.excess(t, *z));
+                let beads = left.beads.iter().flat_map(DVec3::to_array);
+                beads.chain(left.lengths).chain(products.iter().copied()).collect::<Vec<_>>()
+            };
+            let z = self.z.map_with(&step.dz(a, on_arc), |z, dz| z + dz);
+            let after = off_after(&step.to(a, on_arc), &z);
+            let before = off_after(&step.to(0., false), &self.z);
+            let squares = after.iter().zip(before).map(|(f, f_0)| (f - (1. - a) * f_0).powi(2));
+            squares.sum::<f64>().sqrt()
+        }
+
         fn size(&self) -> usize {
             3 * self.rope.curve.n() + self.rope.l.len()
         }
 
         fn assert_solved(&self, step: &Step, shift: f64) {
             let (matrix, rhs) = (self.matrix(shift), self.downhill());
-            let beads = step.to.beads.iter().flat_map(DVec3::to_array);
-            let x: Vec<_> = beads.chain(step.to.lengths.iter().copied()).collect();
+            let beads = step.straight.to.beads.iter().flat_map(DVec3::to_array);
+            let x: Vec<_> = beads.chain(step.straight.to.lengths.iter().copied()).collect();
             let norm = rhs.iter().fold(0f64, |most, b| most.max(b.abs()));
             for (i, b) in rhs.iter().enumerate() {
                 let row: f64 = x.iter().enumerate().map(|(j, x)| matrix[(i, j)] * x).sum();
@@ -254,5 +329,27 @@ mod tests {
         }
         let times = [at_once, by_blocks, by_lengths];
         assert!(times.iter().all(|&times| times >= 5), "{times:?}");
+    }
+
+    #[test]
+    fn an_arc_follows_the_perturbed_conditions_to_third_order() {
+        let mut random = Pcg64Mcg::seed_from_u64(3);
+        let mut newton = Newton::default();
+        let mut cases = 0;
+        // Of the edges of all others bends are no quadratic.
+        for round in (0..120).step_by(2) {
+            let case = Case::new(round, &mut random);
+            newton.shift = 0.;
+            let step = newton.step(&case.rope, &case.around, &case.z, BARRIER).unwrap();
+            if newton.shift > 0. || case.rope.l.iter().any(|&l| l < COARSE) {
+                continue;
+            }
+            cases += 1;
+            let terms = case.around.terms.iter();
+            let share = terms.fold(1f64, |a, t| a.min(longest_step(t, &step.straight.to, 0.5)));
+            let [line, arc] = [false, true].map(|on_arc| case.off(&step, 1e-3 * share, on_arc));
+            assert!(arc < 0.2 * line, "{round}: {arc} on the arc, {line} on the line");
+        }
+        assert!(cases >= 5, "{cases}");
     }
 }

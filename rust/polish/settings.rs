@@ -32,6 +32,9 @@ pub struct Settings {
     pub mu_power: f64,
     /// Error of the perturbed conditions at which mu falls, in units of mu, in [0.1, 100].
     pub centred: f64,
+    /// Force left over at which mu falls, in units of mu, in [0.001, 100]; `centred` times the last mu will do.
+    /// What a rope gains by sliding far it gains in small steps once mu is small.
+    pub balanced: f64,
     /// Range of the contacts' barrier in |v_i - v_j|^2 - 4, in units of sqrt mu, in [0.1, 100]. It is
     /// l^2 at most, l being the longest edge: as far as a contact moves when the beads slide by half an
     /// edge. Pairs beyond would only cost time.
@@ -71,6 +74,7 @@ impl Default for Settings {
             mu_factor: 0.2,
             mu_power: 1.2,
             centred: 10.,
+            balanced: 0.1,
             contact_range: 3.,
             least_contact_range: 0.1,
             longest_way: 0.1,
@@ -97,6 +101,7 @@ impl Settings {
         within("mu_factor", self.mu_factor, 0.01..=0.9, "in [0.01, 0.9]")?;
         within("mu_power", self.mu_power, 1.0..=2., "in [1, 2]")?;
         within("centred", self.centred, 0.1..=100., "in [0.1, 100]")?;
+        within("balanced", self.balanced, 0.001..=100., "in [0.001, 100]")?;
         within("contact_range", self.contact_range, 0.1..=100., "in [0.1, 100]")?;
         let least = self.least_contact_range;
         within("least_contact_range", least, 0.001..=1., "in [0.001, 1]")?;

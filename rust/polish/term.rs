@@ -82,6 +82,17 @@ impl Term {
         direction.lengths[self.component] += force * self.h[0];
     }
 
+    /// Adds `force` times the change of grad g on a step to a direction.
+    pub fn turn(&self, force: f64, step: &Direction, direction: &mut Direction) {
+        let [i, j, k] = self.beads.map(|bead| step.beads[bead]);
+        let [a, b, c] = self.coefficients;
+        let turn = 2. * self.sign * force * (a * i + b * j + c * k);
+        let ends = self.beads.into_iter().zip(self.coefficients);
+        ends.for_each(|(bead, coefficient)| direction.beads[bead] += coefficient * turn);
+        let delta = step.lengths[self.component];
+        direction.lengths[self.component] += 2. * force * self.h[1] * delta;
+    }
+
     /// `stiffness` grad g grad g^T - `z` Hess g on the beads: each 3x3 block of it is this one, times
     /// the product of two coefficients.
     pub fn block(&self, stiffness: f64, z: f64) -> Symmetric {

@@ -1,8 +1,8 @@
 """The command line: one module a command, imported when it is used.
 
 May import `certificates`, `check_certificate`, `check_thickness`, `curve`, `figures`, `formats`,
-`invariants`, `jobs`, `naming`, `patience`, `plot`, `printing`, `starts`, `tables`, `thickness` and
-`tightening`.
+`invariants`, `jobs`, `naming`, `patience`, `plot`, `printing`, `starts`, `strands`, `tables`, `thickness`
+and `tightening`.
 """
 
 import io

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import sys
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
 CERTIFICATE, THICKNESS = ".certificate.json", ".thickness.json"
 """What the names of files end in that prove bounds, and sharper ones."""
+
+FINE = 0.02
+"""Edges of a rope whose L_c is worth quoting: it exceeds the limit by 30 millionths."""
 
 COLUMNS = ("knot", "n", "certified", "r_c", "min_rad", "decided_by", "file")
 
@@ -49,8 +53,9 @@ def command(
     """Prove that each curve's type has a ropelength of at most so much: L_c, rounded up.
 
     A FILE is taken as it is, of any scale; - is standard input. A NAME is the rope that the atlas has of the
-    knot. R is held down by a bend or a pair of vertices: component:vertex, both counted from 0. Where the
-    edges are too long for a proof, the message says by how much, and where.
+    knot, with edges of 0.2; a rope tightened with --dl 0.02 proves a bound worth quoting. R is held down by a
+    bend or a pair of vertices: component:vertex, both counted from 0. Where the edges are too long for a
+    proof, the message says by how much, and where.
 
     A certificate is of a file of plain rows x y z, whose SHA-256 it has. With -o the vertices of all else are
     written as FOLDER/NAME.txt, next to NAME.certificate.json. --check believes nothing that a certificate
@@ -83,7 +88,7 @@ def _certified(
         def certify(source: "Source") -> None:
             curve, certificate = _proven(source)
             sharp = _sharpened(source, curve) if maker.sharp else None
-            for doubt in curve.doubts():
+            for doubt in (*curve.doubts(), *_finer(source, curve)):
                 shown.tell(doubt)
             if table:
                 file = maker.written(source, curve, certificate, sharp) if maker.folder else str(source)
@@ -126,6 +131,24 @@ def _proven(source: "Source") -> "tuple[VertexFile, Certificate]":
         return curve, patiently(lambda: certify(curve.components))
     except CurveError as error:
         raise located(error, curve) from error
+
+
+def _finer(source: "Source", curve: "VertexFile") -> list[str]:
+    """Say how to prove less than the atlas's rope of a name does, whose edges are coarse."""
+    from sono import starts
+    from sono.curve import measure
+    from sono.tables import published
+
+    if not (source.knot and starts.knows(source.knot)):
+        return []
+    rope = measure(curve.components)
+    row = published.extrapolated({"knot": source.name, "n": rope.n, "l_a": rope.l_a, "l_c": rope.l_c})
+    if not (isinstance(limit := row["limit"], float) and rope.l_c):
+        return []
+    about = limit + (rope.l_c - limit) * (FINE / rope.dl) ** 2
+    file = shlex.quote(f"fine/{source.stem}.dl{FINE}.txt")
+    line = f"sono tighten {shlex.quote(source.given)} --dl {FINE} -o fine/ && sono certify {file}"
+    return [f"{source}: edges of {rope.dl:.1f}, a coarse bound; `{line}` proves about {about:.1f}"]
 
 
 def _sharpened(source: "Source", curve: "VertexFile") -> "Thickness":

@@ -101,20 +101,24 @@ def _read(source: str, unread: list[str]) -> list[Row]:
 
 
 def _summary(rows: list[Row]) -> Iterator[str]:
-    """Count the rows shorter than published, those too coarse to tell, and those of no known name."""
+    """Count the rows shorter than published, those too coarse to tell, and those of no known name.
+
+    What is exact is left out: no rope is shorter, and of an estimate that is there is nothing to say.
+    """
     from sono.tables import published
 
-    known = [row for row in rows if row["published"] is not None]
-    if known:
+    counted = [row for row in rows if row["published"] is not None and row["kind"] != "exact"]
+    if counted:
         l_a, l_c, limit = (
-            sum(isinstance(row.get(key), float) and cast("float", row[key]) <= 0 for row in rows)
+            sum(isinstance(row.get(key), float) and cast("float", row[key]) <= 0 for row in counted)
             for key in ("l_a_difference", "l_c_difference", "limit_difference")
         )
         shorter = f"L_a is at most the published value in {l_a}, L_c in {l_c}, the limit in {limit}"
-        yield f"of {len(known)} rows {shorter}"
-    if coarse := [str(row["knot"]) for row in rows if published.is_too_coarse(row)]:
+        yield f"of {len(counted)} rows {shorter}"
+    if coarse := [str(row["knot"]) for row in counted if published.is_too_coarse(row)]:
         why = "edges too coarse to tell which is shorter: the error of the limit exceeds the difference"
         yield f"{len(coarse)} rows have {why}: {published.listed(coarse)}"
-    if len(rows) > len(known):
-        yield f"of {len(rows) - len(known)} rows no ropelength is published under the name they have"
+    if unknown := list(dict.fromkeys(str(row["knot"]) for row in rows if row["published"] is None)):
+        cure = "`sono identify FILE` says what a curve is called, and 3_1.txt is compared with 3_1"
+        yield f"no ropelength is published under the names {published.listed(unknown)}; {cure}"
     yield from published.claims(rows)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from sono.cli import options, places
+from sono.cli.each import once
 
 if TYPE_CHECKING:
     from sono.formats import Close
@@ -42,7 +43,10 @@ def command(
     plan = _plan(curves(given, close), output, format)
     if existing := next((path for path in plan if os.path.isfile(path) and not force), None):
         raise click.UsageError(f"{existing} exists; --force overwrites it")
-    done = [_converted(path, sources, format, quiet) for path, sources in plan.items()]
+    heard: list[Sequence[str]] = []
+    done = [_converted(path, sources, format, heard) for path, sources in plan.items()]
+    for doubt in once(heard) if not quiet else ():
+        options.complain(doubt)
     sys.exit(0 if all(done) else 1)
 
 
@@ -79,8 +83,8 @@ def _plan(sources: "list[Source]", output: str, format: str) -> "dict[str, list[
     return plan
 
 
-def _converted(path: str, sources: "Sequence[Source]", format: str, quiet: bool) -> bool:
-    """Write what can be read of these curves; tell of the others, and whether there are none."""
+def _converted(path: str, sources: "Sequence[Source]", format: str, heard: list[Sequence[str]]) -> bool:
+    """Write what can be read of these curves, note doubts; tell of the others, and whether there are none."""
     from sono import formats
 
     files = []
@@ -89,8 +93,7 @@ def _converted(path: str, sources: "Sequence[Source]", format: str, quiet: bool)
             files.append(source.read())
         except formats.FormatError as error:
             options.complain(str(error))
-    for doubt in (doubt for file in files for doubt in file.doubts() if not quiet):
-        options.complain(doubt)
+    heard += [file.doubts() for file in files]
     try:
         if files:
             formats.write_all(path, [(file.components, file.comments) for file in files], format)

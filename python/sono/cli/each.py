@@ -1,31 +1,73 @@
 """What commands share that do something with each curve of files, one after the other."""
 
+import re
 import shlex
 from collections.abc import Callable, Sequence
-from itertools import chain
 from typing import TYPE_CHECKING
 
 from sono.cli.streams import complain
 
 if TYPE_CHECKING:
-    from sono.formats import Close, VertexFile
+    from sono.formats import Ends, VertexFile
     from sono.jobs.sources import Source
 
 
-def each(given: Sequence[str], close: "Close | None", work: "Callable[[Source], None]") -> int:
-    """Work on each curve of the files given; a wrong one spoils only itself. Return the exit code."""
+_NUMBER = re.compile(r"\d+(\.\d+)?")
+"""What differs in messages that say the same of several curves."""
+
+
+def each(
+    given: Sequence[str],
+    close: "Ends | None",
+    work: "Callable[[Source], Sequence[str] | None]",
+    tell: Callable[[str], None] = complain,
+) -> int:
+    """Work on each curve of the files given; a wrong one spoils only itself. Return the exit code.
+
+    What the work says of several curves of a file the user is told once.
+    """
     # Imported here, since numpy would make --help wait.
     from sono.formats import FormatError
     from sono.jobs.sources import curves
 
     failed = False
-    for source in chain.from_iterable(curves(one, close) for one in given):
+    for one in given:
+        heard: list[Sequence[str]] = []
+        wrong: list[Sequence[str]] = []
+        sources = curves(one, close)
         try:
-            work(source)
-        except FormatError as error:
-            failed = True
-            complain(str(error))
+            for source in sources:
+                try:
+                    heard.append(work(source) or ())
+                except FormatError as error:
+                    wrong.append([str(error)])
+        finally:
+            alike = len(wrong) == len(sources) and len(once(wrong)) == 1
+            for message in once(wrong) if alike else [error for (error,) in wrong]:
+                complain(message)
+            for message in once(heard):
+                tell(message)
+        failed |= bool(wrong)
     return int(failed)
+
+
+def once(heard: Sequence[Sequence[str]]) -> list[str]:
+    """Return what is said of the curves of a file: what is said of several in one message."""
+    if len(heard) == 1:
+        return list(heard[0])
+    kinds: dict[str, list[str]] = {}
+    for messages in heard:
+        for kind, message in {_NUMBER.sub("", message): message for message in reversed(messages)}.items():
+            kinds.setdefault(kind, []).append(message)
+    return [_counted(said, len(heard)) for said in kinds.values()]
+
+
+def _counted(said: Sequence[str], curves: int) -> str:
+    """Give the first of messages that say the same, and of how many curves."""
+    if len(said) == 1:
+        return said[0]
+    many = f"all {curves}" if len(said) == curves else f"{len(said)} of {curves}"
+    return f"{said[0]} (in {many} curves of the file)"
 
 
 def file_of(source: "Source", command: str, does: str) -> "VertexFile":
@@ -52,5 +94,6 @@ def rope_of(source: "Source") -> "VertexFile":
     source.read()  # says what is wrong with it, if it is no name at all
     if doubt := starts.doubt(source.given):
         raise FormatError(f"{source}: {doubt}")
-    cure = f"`sono tighten {shlex.quote(source.given)} -o rope.txt` makes one"
+    name = shlex.quote(source.given)
+    cure = f"`sono tighten {name} -o rope.txt` makes one, `sono search {name}` looks for the shortest"
     raise FormatError(f"{source}: the atlas has no rope of {source.given!r}; {cure}")

@@ -22,7 +22,7 @@ COLUMNS = ("file", "knot", "known", "crossings")
 @options.files
 @click.option("--pd", is_flag=True, help="Write PD codes, a line for each FILE, instead of a table.")
 @options.close
-@options.table(COLUMNS)
+@options.table(COLUMNS, "identify")
 def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: options.Shown) -> None:
     """Name the knot or link of curves: a row for each FILE, - for standard input, or each curve in it.
 
@@ -47,16 +47,15 @@ def command(sources: tuple[str, ...], pd: bool, close: "Close | None", shown: op
     """
     with nullcontext() if pd else shown.table() as table:
 
-        def name(source: "Source") -> None:
+        def name(source: "Source") -> list[str]:
             doubts, found = _identified(source)
-            for doubt in doubts:
-                shown.tell(doubt)
             if table:
                 table.row(row(str(source), found))
             else:
                 _write_pd(str(source), found, shown)
+            return doubts
 
-        code = each(sources, close, name)
+        code = each(sources, close, name, shown.tell)
     sys.exit(code)
 
 

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -13,8 +13,11 @@ from sono.cli import options
 from sono.cli.each import each, file_of
 
 if TYPE_CHECKING:
-    from sono.formats import Close
+    from sono.formats import Close, VertexFile
     from sono.jobs.sources import Source
+
+OF_CHAINS = ("knot", "file", "components", "n", "length", *(key for key in tables.SHAPE if key != "contacts"))
+"""What can be told of an open chain as it is."""
 
 
 @click.command("measure")
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
 @click.option("--residual", is_flag=True, help="Add how far the forces in the rope are from balance.")
 @click.option("--all", "everything", is_flag=True, help="Add all descriptors of shape, in a time like n^2.")
 @options.close
-@options.table((*tables.DEFAULT, "dispersion", "r_s"))
+@options.table((*tables.DEFAULT, "dispersion", "r_s", "file"), "measure")
 def command(
     sources: tuple[str, ...],
     residual: bool,
@@ -47,6 +50,9 @@ def command(
     torsion are sums of angles in radians, the maximal curvature is 1/MinRad, contacts are pairs of vertices
     2 R_s apart. Any of them can be asked for alone: --columns knot,writhe,acn
 
+    Descriptors of an open chain are of its own vertices and edges, also where --close closes it for the rest.
+    With no columns but these, n, length, knot and file, none needs be closed.
+
     \b
       sono measure --residual trefoil.n480.txt
       sono measure trefoil.n480.txt --columns knot,writhe,acn
@@ -55,14 +61,18 @@ def command(
     shown = replace(shown, columns=list(dict.fromkeys([*shown.columns, *wanted])))
     with shown.table() as table:
 
-        def measure(source: "Source") -> None:
+        def measure(source: "Source") -> list[str]:
             row, doubts = _measured(source, shown.columns)
-            for doubt in doubts:
-                shown.tell(doubt)
             table.row(row)
+            return doubts
 
-        code = each(sources, close, measure)
+        code = each(sources, close or _left_open(shown.columns), measure, shown.tell)
     sys.exit(code)
+
+
+def _left_open(columns: Sequence[str]) -> 'Literal["open"] | None':
+    """Leave chains open if all that is asked of them is known without a closure."""
+    return "open" if {*columns} <= {*OF_CHAINS} else None
 
 
 def _measured(source: "Source", columns: Sequence[str]) -> tuple[tables.Row, list[str]]:
@@ -74,14 +84,27 @@ def _measured(source: "Source", columns: Sequence[str]) -> tuple[tables.Row, lis
     from sono.patience import patiently
 
     curve = file_of(source, "measure", "measures")
-    measures = measures_of(curve)
     doubts = curve.doubts()
     file = f"{curve.name}:{curve.key}" if curve.key else curve.name
-    if measures.l_c is None:
+    if source.close == "open" and not all(curve.rings):
+        return _of_chains(curve) | {"knot": source.name, "file": file}, doubts
+    measures = measures_of(curve)
+    if measures.l_c is None and "l_c" in columns:
         doubts.append(f"{file}: no L_c, since R_s <= dl/sqrt 2; refine the curve")
     more: dict[str, tables.Value] = {}
     if "residual" in columns:
         more["residual"] = patiently(partial(forces, curve.components)).residual
     if {*columns} & {*tables.SHAPE}:
-        more |= patiently(partial(shape_of, curve.components))
+        more |= patiently(partial(shape_of, curve.chains, curve.rings))
     return as_row(source.name, file, measures, **more), doubts
+
+
+def _of_chains(curve: "VertexFile") -> dict[str, tables.Value]:
+    """Return what can be told of open chains, and of rings beside them."""
+    from sono.jobs.result import shape_of
+    from sono.patience import patiently
+    from sono.strands import length
+
+    size = {"n": sum(map(len, curve.chains)), "components": len(curve.chains)}
+    shape = patiently(partial(shape_of, curve.chains, curve.rings))
+    return {**size, "length": length(curve.chains, curve.rings), **shape}

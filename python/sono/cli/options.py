@@ -184,17 +184,34 @@ class Shown:
             complain(message)
 
 
-def table(default: Sequence[str]) -> Callable[[Function], Function]:
-    """`--format`, `--columns`, these columns being the default, and `--quiet`: as how results are `shown`."""
+FILLED: dict[str, tuple[str, ...]] = {
+    "measure": (
+        *("knot", "file", "n", "components", "dl", "dispersion", "min_rad", "sr", "r_s", "r_c", "length"),
+        *("inscribed_length", "l_p", "l_c", "l_a", *tables.SHAPE, "residual"),
+    ),
+    "identify": (
+        *("file", "knot", "known", "may_be", "components", "crossings", "determinant", "signature"),
+        *("linking", "alexander", "homfly"),
+    ),
+}
+"""The columns that commands of few columns have."""
+
+
+def table(default: Sequence[str], command: str | None = None) -> Callable[[Function], Function]:
+    """`--format`, `--columns`, these columns being the default, and `--quiet`: as how results are `shown`.
+
+    A `command` that is named refuses columns that it has not.
+    """
+    filled = FILLED.get(command or "", tuple(tables.COLUMNS))
 
     def decorate(function: Function) -> Function:
         @click.option(
             "--columns",
             default=",".join(default),
             show_default=True,
-            callback=_columns,
+            callback=lambda ctx, param, value: _columns(value, filled),
             metavar="KEY,...",
-            help=f"Columns of the table, l_p or L_p, of: {', '.join(tables.COLUMNS)}.",
+            help=f"Columns of the table, l_p or L_p, of: {', '.join(filled)}.",
         )
         @click.option(
             "--format",
@@ -264,11 +281,16 @@ def other_starts(function: Function) -> Function:
     )(function)
 
 
-def _columns(ctx: click.Context, param: click.Parameter, value: str) -> list[str]:
+def _columns(value: str, filled: Sequence[str]) -> list[str]:
     try:
         keys = [tables.key_of(name) for name in value.split(",") if name.strip()]
     except ValueError as error:
         raise click.BadParameter(str(error)) from error
     if not keys:
         raise click.BadParameter("name at least one column")
+    for key in keys:
+        if key not in filled:
+            others = [f"`sono {name}`" for name, columns in FILLED.items() if key in columns]
+            cure = f"{' and '.join(others)} has it" if others else f"there are: {', '.join(filled)}"
+            raise click.BadParameter(f"{key} is no column of this command; {cure}")
     return keys

@@ -116,7 +116,7 @@ def _made_all(tasks: Sequence[Task], jobs: int) -> "Iterator[Rope | str]":
     from concurrent.futures.process import BrokenProcessPool
     from multiprocessing import active_children, get_context
 
-    with ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_leave_ctrl_c) as pool:
+    with ProcessPoolExecutor(jobs, get_context("spawn"), initializer=_in_another) as pool:
         try:
             yield from pool.map(_made, tasks, chunksize=4)
         except BrokenProcessPool as error:  # the system kills those that take too much
@@ -128,11 +128,21 @@ def _made_all(tasks: Sequence[Task], jobs: int) -> "Iterator[Rope | str]":
             raise
 
 
-def _leave_ctrl_c() -> None:
-    """Leave Ctrl-C to the process that waits for this one."""
+def _in_another() -> None:
+    """Leave Ctrl-C to the process that waits for this one, and end when that does, however it ends."""
     import signal
+    from threading import Thread
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    from multiprocessing import parent_process
+
+    if parent := parent_process():
+        parent.join()
+        os._exit(1)
 
 
 def _made(task: Task) -> "Rope | str":

@@ -85,7 +85,7 @@ def command(
             title += f", scrambled with seed {scramble_seed}"
             curve = scramble(curve, scramble_seed)
     except ValueError as error:
-        raise click.UsageError(str(error)) from error
+        raise click.UsageError(f"{error}{_or_known(name, error)}") from error
     if doubt := starts.doubt(name or ""):
         options.complain(doubt)
     try:
@@ -112,6 +112,15 @@ def _drawn(name: str | None, word: str | None, variant: int, known: bool) -> "tu
     title += ", the rope of the atlas" if known else ""
     title += f", variant {variant}" if variant else ""
     return title, curve
+
+
+def _or_known(name: str | None, error: ValueError) -> str:
+    """Offer the atlas's rope where the table is not installed that has the drawing."""
+    from sono import starts
+    from sono.starts.tabled import NoTableError
+
+    has = name is not None and isinstance(error, NoTableError) and starts.known(name)
+    return "; or --known, for the rope of the atlas" if has else ""
 
 
 def _generators(word: str) -> list[int]:

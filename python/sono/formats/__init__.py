@@ -40,8 +40,9 @@ from sono.formats import (
     vect,
     xyz,
 )
-from sono.formats.closing import Close
+from sono.formats.closing import Close, Ends
 from sono.formats.files import atomic, decoded, head, is_stream, load, part_of, save, unpacked
+from sono.formats.refused import refuse_trajectory
 from sono.formats.vertices import SHOWN, FormatError, Raw, VertexFile, shown
 
 __all__ = [
@@ -50,6 +51,7 @@ __all__ = [
     "SUFFIXES",
     "WRITERS",
     "Close",
+    "Ends",
     "FormatError",
     "Raw",
     "VertexFile",
@@ -173,7 +175,7 @@ LOOSE = {PLAIN, "xyz", "csv"}
 """The formats whose suffixes say little of what is in a file: plain rows are called .xyz and .csv as well."""
 
 
-def read(source: str | os.PathLike[str], close: Close | None = None) -> VertexFile:
+def read(source: str | os.PathLike[str], close: Ends | None = None) -> VertexFile:
     """Read a curve of one or more components from a file, or from standard input when `source` is "-".
 
     Of a file that holds several curves, "FILE:KEY" reads one. Every component has at least three vertices,
@@ -207,8 +209,9 @@ def raws(source: str | os.PathLike[str]) -> tuple[str, Sequence[Raw]]:
     found = found[0].parts or found
     if chosen := [raw for raw in found if raw.key == key]:
         return name, chosen
-    keys = _listed(found) or "no others"
-    raise FormatError(f"{name}: holds no curve {shown(key)}; there are: {keys}")
+    keys = _listed([raw for raw in found if raw.key])
+    cure = f"there are: {keys}" if keys else "it holds one, which has none: give the file without a key"
+    raise FormatError(f"{name}: holds no curve {shown(key)}; {cure}")
 
 
 def _listed(curves: Sequence[Raw]) -> str:
@@ -235,6 +238,7 @@ def may_hold_several(path: str) -> bool:
 
 def _format_of(name: str, data: bytes) -> str:
     """Tell which format a file of this name has that begins like this. Raises `FormatError`."""
+    refuse_trajectory(name, _suffix(name), data)
     if data.startswith(SOLID) or (_suffix(name) in SOLIDS and b"\0" in data[:80]):
         raise FormatError.at(
             name, 1, "this is a solid, not a curve; give the curve, or the knot's name, that it was made of"

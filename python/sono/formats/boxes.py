@@ -22,9 +22,6 @@ BREAK = 4.0
 FITS = 1.05
 """A chain that is wider than so many boxes is not wrapped."""
 
-APART = "the file does not tell which images of the components are together; check how these are linked"
-"""Note on several components that were unwrapped, each on its own."""
-
 
 @dataclass(frozen=True, eq=False)
 class Box:

@@ -44,7 +44,7 @@ def read(text: str, name: str) -> list[Raw]:
     _refuse_more(text[place:], name, line)
     if any(text.count(one) != text.count(other) for one, other in ("[]", "()", "{}")):
         raise FormatError.at(name, line, "brackets are opened that are not closed; complete the file")
-    return [Raw([Chain(rows, lines) for rows, lines in parts])]
+    return [Raw([Chain(rows, lines, said=False) for rows, lines in parts])]
 
 
 def _vertex(content: str, name: str, line: int) -> list[float]:

@@ -15,6 +15,9 @@ Floats: TypeAlias = NDArray[np.float64]
 Close: TypeAlias = Literal["direct", "sphere"]
 """How open chains are closed."""
 
+Ends: TypeAlias = Close | Literal["open"]
+"""What is done with open chains: they may be left open, for what is known of them without a closure."""
+
 WAYS: tuple[str, ...] = get_args(Close)
 
 ROOM = 1.25

@@ -17,7 +17,7 @@ from functools import cached_property
 from pathlib import PurePath
 
 from sono import starts
-from sono.formats.vertices import Chain, FormatError, Raw
+from sono.formats.vertices import Chain, FormatError, Raw, alone
 
 _KIND = r"(?P<kind>pd|dt|gauss)\s*:"
 _LINE = re.compile(rf"(?:(?P<label>[^:\t]*?)\s*[:\t]\s*)?{_KIND}(?P<code>.*)", re.IGNORECASE)
@@ -68,15 +68,11 @@ def read(text: str, name: str) -> list[Raw]:
         raise FormatError.at(name, 1, "the file holds no codes; give one a line")
     codes = [_split(line, kind) for _, line in lines]
     times = Counter(label for label, _ in codes)
-    several = len(lines) > 1
-    return [
-        Raw(
-            Drawn(name, number, code),
-            _key(label, number, times[label]) if several else "",
-            comments=[label] * bool(label),
-        )
+    found = [
+        Raw(Drawn(name, number, code), _key(label, number, times[label]), comments=[label] * bool(label))
         for (number, _), (label, code) in zip(lines, codes, strict=True)
     ]
+    return found if len(found) > 1 else alone(found[0], found[0].key)
 
 
 def _split(line: str, kind: str) -> tuple[str, str]:

@@ -71,7 +71,7 @@ class Parts:
 
     def chains(self, closed: bool | None) -> list[Chain]:
         """Give the components."""
-        return [Chain(part.rows, part.lines, closed) for part in self._parts.values()]
+        return [Chain(part.rows, part.lines, closed, said=False) for part in self._parts.values()]
 
     def refuse_runs(self, name: str) -> None:
         """Refuse words that change where elements would not. Raises `FormatError`."""

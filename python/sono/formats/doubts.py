@@ -29,6 +29,16 @@ def closing_edge(vertices: Floats) -> float:
 
 
 @np.errstate(over="ignore", invalid="ignore")
+def ends_apart(vertices: Floats) -> bool:
+    """Tell whether the ends of a component (n, 3) are farther apart than neighbours are.
+
+    The edge that closes a ring is the longest one at most, or 1.5 times the median one, as bonds vary.
+    """
+    edges = np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1)
+    return bool(edges[-1] > max(edges[:-1].max(), LONGEST * np.median(edges)))
+
+
+@np.errstate(over="ignore", invalid="ignore")
 def gaps(vertices: Floats) -> NDArray[np.int64]:
     """Give the edges within a chain (n, 3) after which another may begin: few, and far longer than others."""
     edges = np.linalg.norm(np.diff(vertices, axis=0), axis=1)

@@ -13,12 +13,16 @@ reference manual, "gro file format".
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import accumulate, groupby, pairwise
 
 import numpy as np
 
 from sono.formats.boxes import Box
 from sono.formats.molecules import Atom, Model, curves
 from sono.formats.vertices import FormatError, Raw, numbers, place, shown
+
+CURE = "have the numbers of residues begin anew in a second chain"
+"""How this format tells chains apart."""
 
 _ROW = r"[ \d]{5}.{10}[ \d]{5}(?: *-?\d+\.\d+){3}"
 _HEAD = re.compile(rf".*\n[ \t]*\d+[ \t]*\n{_ROW}")
@@ -41,10 +45,24 @@ def read(text: str, name: str) -> list[Raw]:
             raise FormatError.at(name, first + 1, f"{message}; complete the frame")
         atoms = [_atom(line, name, number) for number, line in enumerate(lines[first + 2 : after], first + 3)]
         box = _box(lines[after], name, after + 1)
-        models.append(Model(str(len(models) + 1), atoms, set(), box))
+        models.append(Model(str(len(models) + 1), _parted(atoms), set(), box, cure=CURE))
         titles.append(lines[first].strip())
         first = after + 1
     return [replace(raw, comments=titles[:1]) for raw in curves(models, name)]
+
+
+def _parted(atoms: Sequence[Atom]) -> list[Atom]:
+    """Tell molecules apart, which GRO does by the numbers of residues alone.
+
+    Where each residue holds three beads or more, all of one name, it is a molecule. Otherwise one begins
+    where the numbers go back, but for 0, which comes after 99999.
+    """
+    sizes = [len(list(same)) for _, same in groupby(atom.number for atom in atoms)]
+    beads = len({atom.name for atom in atoms}) == 1 and min(sizes) > 2
+    numbers = [int(atom.number) if atom.number.isdecimal() else 0 for atom in atoms]
+    begins = [one != other if beads else 0 < other < one for one, other in pairwise(numbers)]
+    parts = accumulate(map(int, begins), initial=0)
+    return [replace(atom, part=part) for atom, part in zip(atoms, parts, strict=True)]
 
 
 def _atom(line: str, name: str, number: int) -> Atom:

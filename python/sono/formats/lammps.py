@@ -36,6 +36,7 @@ from numpy.typing import NDArray
 
 from sono.formats.bonds import along
 from sono.formats.boxes import Box
+from sono.formats.images import together
 from sono.formats.simulated import BY_FLAGS, BY_NEAREST, Atoms, column, gaps, kept, whole
 from sono.formats.vertices import FormatError, Raw, shown
 
@@ -80,8 +81,10 @@ def read(text: str, name: str) -> list[Raw]:
         atoms.refuse_breaks(chain)
     if flagged or any(moved for _, moved in pairs):
         notes = [BY_NEAREST if any(moved for _, moved in pairs) else BY_FLAGS, *notes]
-    told = [f"{name}: {note}" for note in notes]
-    return [Raw([chain for chain, _ in pairs], notes=told, comments=_comments(text, head))]
+    sides = box if any(_SIDE.fullmatch(data) for _, data in head) else None
+    chains, moved = together(sides, [chain for chain, _ in pairs])
+    told = [f"{name}: {note}" for note in [*notes, *moved]]
+    return [Raw(chains, notes=told, comments=_comments(text, head))]
 
 
 def _by_order(atoms: Atoms) -> tuple[list[Ints], Sequence[bool | None], list[str]]:

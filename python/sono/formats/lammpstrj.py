@@ -27,9 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats.boxes import Box
+from sono.formats.images import together
 from sono.formats.refused import attempted
 from sono.formats.simulated import BY_FLAGS, BY_NEAREST, Atoms, column, gaps, whole
-from sono.formats.vertices import FormatError, Raw, shown
+from sono.formats.vertices import FormatError, Raw, alone, shown
 
 Floats = NDArray[np.float64]
 
@@ -56,9 +57,8 @@ def read(text: str, name: str) -> list[Raw]:
     keys = [frame["TIMESTEP"].first if "TIMESTEP" in frame else "" for frame in frames]
     if len(set(keys)) < len(keys):
         keys = [str(number) for number in range(1, len(frames) + 1)]
-    if len(frames) == 1:
-        keys = [""]
-    return [attempted(partial(_curve, frame, key), key) for key, frame in zip(keys, frames, strict=True)]
+    found = [attempted(partial(_curve, frame, key), key) for key, frame in zip(keys, frames, strict=True)]
+    return found if len(found) > 1 else alone(found[0], keys[0])
 
 
 @dataclass(frozen=True)
@@ -148,9 +148,10 @@ def _curve(frame: dict[str, _Block], key: str) -> Raw:
         atoms.refuse_breaks(chain)
     if any(moved for _, moved in pairs):
         notes = [BY_NEAREST]
-    notes = [*notes, *left, *gaps([atoms.ids[group] for group in groups])]
+    chains, moved = together(box, [chain for chain, _ in pairs])
+    notes = [*notes, *moved, *left, *gaps([atoms.ids[group] for group in groups])]
     where = f"{atoms.name}:{frame['ATOMS'].line}"
-    return Raw([chain for chain, _ in pairs], key, [f"{where}: {note}" for note in notes])
+    return Raw(chains, key, [f"{where}: {note}" for note in notes])
 
 
 def _atoms(block: _Block, box: Box | None) -> tuple[Atoms, list[str]]:

@@ -34,6 +34,10 @@ ATOM = [
 """The items of an atom that are read: for each the first of these names that the file has."""
 
 
+CURE = "give a second chain another auth_asym_id"
+"""How this format tells chains apart."""
+
+
 def recognises(text: str) -> bool:
     """Tell whether the first word that is not in a comment begins a block of data."""
     return re.match(r"(?:\s|#[^\n]*\n)*data_", text, re.IGNORECASE) is not None
@@ -56,7 +60,7 @@ def read(text: str, name: str) -> list[Raw]:
             Atom(group == "HETATM", atom, other, residue, chain, part_number, at + inserted, xyz, number)
         )
     links = list(_links(bonds))
-    return curves([Model(key, atoms, _bonds(links, atoms)) for key, atoms in models.items()], name)
+    return curves([Model(key, atoms, _bonds(links, atoms), cure=CURE) for key, atoms in models.items()], name)
 
 
 def _tables(text: str, name: str) -> tuple[Table, Table, int]:

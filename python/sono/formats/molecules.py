@@ -8,7 +8,7 @@ a curve of its own, with the chain as the key, such as A, or 2:A in model 2.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 
@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.formats.bonds import against, along
-from sono.formats.boxes import APART, Box, rejoined, second_chain
+from sono.formats.boxes import Box, rejoined, second_chain
 from sono.formats.doubts import LONGEST, closing_edge
+from sono.formats.images import together
 from sono.formats.refused import Refused, attempted
 from sono.formats.simulated import BY_NEAREST
-from sono.formats.vertices import SHOWN, Chain, FormatError, Raw
+from sono.formats.vertices import SHOWN, Chain, FormatError, Raw, alone
 
 BACKBONE = ({"N", "C"}, {"P", "O3'"})
 """Atoms whose bond joins two residues, other than those that a chain goes through."""
@@ -57,7 +58,7 @@ class Atom:
 class Model:
     """A model: its atoms, the bonds between them as pairs of places in that list, and the periodic box.
 
-    Of one that is `wrong` the error is all that is wanted.
+    Of one that is `wrong` the error is all that is wanted. The `cure` is how its format tells chains apart.
     """
 
     key: str
@@ -65,6 +66,7 @@ class Model:
     bonds: Bonds
     box: Box | None = None
     wrong: FormatError | None = None
+    cure: str = "put TER ahead of a second chain"
 
 
 @np.errstate(all="ignore")  # what is not finite is refused later on
@@ -85,14 +87,16 @@ def curves(models: Sequence[Model], name: str) -> list[Raw]:
             for chain, trace in zip(_keys(several), several, strict=True):
                 key = f"{model.key}:{chain}" if len(models) > 1 else chain
                 found.append(attempted(partial(_link, [trace], key), key))
-    return found if len(found) > 1 else [replace(found[0], key="")]
+    if len(found) > 1:
+        return found
+    chain = _keys(traces[0])[0] if len(traces[0]) == 1 else ""
+    return alone(found[0], chain, models[0].key, f"{models[0].key}:{chain}" if chain else "")
 
 
 def _link(traces: Sequence["_Trace"], key: str) -> Raw:
     notes = [note for trace in traces for note in trace.notes()]
-    if len(traces) > 1 and any(trace.moved for trace in traces):
-        notes.append(f"{traces[0].name}: {APART}")
-    return Raw([trace.chain() for trace in traces], key, notes)
+    chains, moved = together(traces[0].box, [trace.chain() for trace in traces])
+    return Raw(chains, key, [*notes, *(f"{traces[0].name}: {note}" for note in moved)])
 
 
 def _keys(traces: Sequence["_Trace"]) -> list[str]:
@@ -161,7 +165,7 @@ class _Trace:
 
     def __init__(self, name: str, model: Model, called: str, places: Sequence[int], left: int) -> None:
         self.name, self._model, self._called, self._places, self._left = name, model, called, places, left
-        self.atoms = [model.atoms[place] for place in places]
+        self.box, self.atoms = model.box, [model.atoms[place] for place in places]
         self._place(np.array([atom.place for atom in self.atoms]))
         self._joined = [frozenset(pair) in model.bonds for pair in pairwise(places)]
         self._spelled = sum(self._joined) > len(self._joined) / 2
@@ -202,7 +206,7 @@ class _Trace:
             raise FormatError.at(
                 self.name,
                 here.line,
-                f"{why}, from line {before.line}; put TER ahead of a second chain, or unwrap the first",
+                f"{why}, from line {before.line}; {self._model.cure}, or unwrap the first",
             )
 
     def _jumps(self, edge: int) -> bool:
@@ -241,7 +245,8 @@ class _Trace:
         if self._wrong:
             raise self._wrong
         self._refuse_breaks()
-        return Chain(self._rows, [atom.line for atom in self.atoms], self.closed)
+        closed = None if self.closed and not (self._bonded or self._called) else self.closed
+        return Chain(self._rows, [atom.line for atom in self.atoms], closed)
 
     def notes(self) -> list[str]:
         """Tell which atoms were taken, why the chain is closed, and which may be missing."""

@@ -40,7 +40,7 @@ def chains_of(found: NDArray[np.generic], name: str) -> list[Chain]:
         raise FormatError.at(name, 1, f"the array has the shape {found.shape}; {cure}")
     with np.errstate(over="ignore"):
         parts = found.astype(np.float64).reshape(-1, *found.shape[-2:])
-    return [Chain(part, range(1, len(part) + 1)) for part in parts]
+    return [Chain(part, range(1, len(part) + 1), said=False) for part in parts]
 
 
 def write(components: Iterable[NDArray[np.float64]], comments: Sequence[str]) -> bytes:

@@ -46,7 +46,7 @@ def read(text: str, name: str) -> list[Raw]:
         elif "#" in line:
             comments.append(line.partition("#")[2].strip())
         elif rows:
-            chains.append(Chain(rows, lines))
+            chains.append(Chain(rows, lines, said=False))
             rows, lines = [], []
     if not chains:
         raise FormatError.at(name, 1, "the file holds no vertices; give rows of three numbers x y z")

@@ -9,8 +9,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.closing import Close, closing
-from sono.formats.doubts import closing_edge, jumps
+from sono.formats.closing import WAYS, Ends, closing
+from sono.formats.doubts import closing_edge, ends_apart, jumps
 
 REPEATED = 1e-4
 """A last vertex nearer to the first than this share of the edges beside them is the first again, rounded: in
@@ -37,12 +37,14 @@ class FormatError(ValueError):
 class Chain:
     """One component as a file has it: its vertices, `rows` (n, 3), and the `lines` (n,) that they stand on.
 
-    A format in which chains may be open says whether this one is `closed`; None leaves that to its ends.
+    A format in which chains may be open says whether this one is `closed`; None leaves that to its ends. Of
+    plain rows nothing is `said`: they are taken as closed, but may be meant otherwise.
     """
 
     rows: Any
     lines: Sequence[int]
     closed: bool | None = True
+    said: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +62,18 @@ class Raw:
     parts: Sequence["Raw"] = ()
 
 
+def alone(raw: Raw, *keys: str) -> list[Raw]:
+    """Give the only curve of a file, which needs no key, and has those that it would have beside others."""
+    return [replace(raw, key="", parts=[replace(raw, key=key) for key in dict.fromkeys(keys) if key])]
+
+
 @dataclass(frozen=True, eq=False)
 class VertexFile:
     """A curve as read: `components`, each (n_i, 3) in the file's unit, and the `lines`, each (n_i,).
 
     The `key` tells it from others of the same file. The `notes` tell the user what was made of the file, the
-    `comments` are what the file says of the curve.
+    `comments` are what the file says of the curve. Of a component that is an open chain, closed as asked, the
+    first so many vertices are its `own`; None, or nothing at all, stands for components that are rings.
     """
 
     name: str
@@ -74,6 +82,18 @@ class VertexFile:
     key: str = ""
     notes: Sequence[str] = ()
     comments: Sequence[str] = ()
+    own: Sequence[int | None] = ()
+
+    @property
+    def rings(self) -> list[bool]:
+        """Tell which components are rings in the file."""
+        return [own is None for own in self.own] or [True] * len(self.components)
+
+    @property
+    def chains(self) -> list[NDArray[np.float64]]:
+        """The components with no vertices but those of the file."""
+        own = self.own or [None] * len(self.components)
+        return [vertices[:count] for vertices, count in zip(self.components, own, strict=True)]
 
     def where(self, component: int, vertex: int) -> str:
         """Say where a vertex stands (both indices 0-based), as "name:line"."""
@@ -85,34 +105,42 @@ class VertexFile:
             f"{self.where(component, -1)}: the edge that closes the curve, from here back to line "
             f"{self.lines[component][0]}, is {far:.0f} times the mean edge; if this chain is open, its knot "
             "is what this edge makes of it: --close sphere closes it round the outside"
-            for component, vertices in enumerate(self.components)
-            if (far := closing_edge(vertices))
+            for component, (vertices, ring) in enumerate(zip(self.components, self.rings, strict=True))
+            if ring and (far := closing_edge(vertices))
         ]
 
     @classmethod
-    def checked(cls, name: str, raw: Raw, close: Close | None = None) -> "VertexFile":
-        """Check a curve that was read, and close its open chains as asked. Raises `FormatError`."""
+    def checked(cls, name: str, raw: Raw, close: Ends | None = None) -> "VertexFile":
+        """Check a curve that was read, and close its open chains as asked. Raises `FormatError`.
+
+        If they are left open, their `own` vertices are all.
+        """
         strands = [_Strand.of(name, chain) for chain in raw.chains]
         _refuse_jumps(name, strands)
-        closed, notes = [], [*raw.notes]
-        for strand in strands:
-            strand, note = strand.closed(close)
-            closed.append(strand)
-            notes += [note] if note else []
-        return cls(
-            name, [it.vertices for it in closed], [it.lines for it in closed], raw.key, notes, raw.comments
-        )
+        pairs = [strand.closed(close) for strand in strands]
+        closed = [strand for strand, _ in pairs]
+        notes = [*raw.notes, *(note for _, note in pairs if note)]
+        own = [strand.own for strand in closed]
+        vertices, lines = [it.vertices for it in closed], [it.lines for it in closed]
+        return cls(name, vertices, lines, raw.key, notes, raw.comments, own if any(own) else ())
 
 
 @dataclass(frozen=True, eq=False)
 class _Strand:
-    """One component (n, 3) of a file: its first vertex is not repeated, every edge has a length."""
+    """One component (n, 3) of a file: its first vertex is not repeated, every edge has a length.
+
+    It `is_open`, or `may_be` if the user closes chains; its `ends` may be all that tells, in a format of a
+    `chain` of atoms or in one of plain rows. Once it is closed, its first `own` vertices are the file's.
+    """
 
     name: str
     vertices: NDArray[np.float64]
     lines: NDArray[np.int64]
     is_open: bool
-    looks_open: bool
+    may_be: bool
+    ends: bool
+    chain: bool
+    own: int | None = None
 
     @classmethod
     def of(cls, name: str, chain: Chain) -> Self:
@@ -132,16 +160,20 @@ class _Strand:
                 lines[0],
                 f"the component that starts here has too few vertices: {len(vertices)}; give at least 3",
             )
-        apart = bool(closing_edge(vertices))
-        is_open = not meet and (apart if chain.closed is None else not chain.closed)
+        far = bool(closing_edge(vertices))
+        is_open = not meet and (far if chain.closed is None else not chain.closed)
+        ends = not meet and (chain.closed is None or not chain.said)
         _refuse_twins(name, vertices, lines)
-        return cls(name, vertices, lines, is_open, apart)
+        may_be = far or (ends and ends_apart(vertices))
+        return cls(name, vertices, lines, is_open, may_be, ends, chain.closed is None)
 
-    def closed(self, close: Close | None) -> "tuple[_Strand, str | None]":
-        """Close a chain that is open, or looks so, as asked, and tell. Raises `FormatError`."""
-        if not self.is_open and not (close and self.looks_open):
-            return self, None
+    def closed(self, close: Ends | None) -> "tuple[_Strand, str | None]":
+        """Close a chain that is open, or may be, as asked, and tell. Raises `FormatError`."""
         first, last = self.lines[[0, -1]]
+        asked = close in WAYS
+        if not self.is_open and not (self.may_be and (asked or (close and self.chain))):
+            ring = f"{self.name}:{last}: the chain that ends here is a ring, as line {first} is a bond away"
+            return self, f"{ring}: --close leaves it alone" if asked and self.ends else None
         if close is None:
             raise FormatError.at(
                 self.name,
@@ -149,11 +181,17 @@ class _Strand:
                 f"the chain is open: it ends here and began on line {first}; --close direct joins its ends "
                 "by an edge, --close sphere by way of a sphere round it",
             )
+        own = len(self.vertices)
+        if close == "open":
+            return replace(self, own=own), None
         added = closing(self.vertices, close)
         lines = np.concatenate([self.lines, np.full(len(added), last)])
         way = "a sphere round it" if close == "sphere" else "the straight way"
-        note = f"{self.name}:{last}: the open chain that ends here was closed to line {first} by {way}"
-        return replace(self, vertices=np.vstack([self.vertices, added]), lines=lines), note
+        note = (
+            f"{self.name}:{last}: the open chain that ends here was closed to line {first} by {way}, "
+            f"with {len(added)} more vertices"
+        )
+        return replace(self, vertices=np.vstack([self.vertices, added]), lines=lines, own=own), note
 
 
 def _refuse_twins(name: str, vertices: NDArray[np.float64], lines: NDArray[np.int64]) -> None:

@@ -22,13 +22,14 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.formats.boxes import APART, Box, rejoined
+from sono.formats.boxes import Box, rejoined
 from sono.formats.columns import Parts
 from sono.formats.doubts import gaps
+from sono.formats.images import together
 from sono.formats.layouts import Layout
 from sono.formats.refused import attempted
 from sono.formats.simulated import BY_NEAREST
-from sono.formats.vertices import Chain, FormatError, Raw, numbers, shown
+from sono.formats.vertices import Chain, FormatError, Raw, alone, numbers, shown
 
 _COUNT = re.compile(r"\s*\d+\s*(\n|$)")
 _SIZES = re.compile(r'(?:^|\s)components="([\d ]*)"')
@@ -53,11 +54,11 @@ def read(text: str, name: str) -> list[Raw]:
     """
     lines = text.rstrip().split("\n")
     starts = _starts(lines)
-    keys = [str(number) if len(starts) > 1 else "" for number in range(1, len(starts) + 1)]
-    return [
-        attempted(partial(_frame, lines[first:after], name, first + 1, key), key)
-        for key, first, after in zip(keys, starts, [*starts[1:], len(lines)], strict=True)
+    found = [
+        attempted(partial(_frame, lines[first:after], name, first + 1, str(key)), str(key))
+        for key, (first, after) in enumerate(zip(starts, [*starts[1:], len(lines)], strict=True), 1)
     ]
+    return found if len(found) > 1 else alone(found[0], "1")
 
 
 def _starts(lines: Sequence[str]) -> list[int]:
@@ -138,8 +139,8 @@ def _whole(chains: Sequence[Chain], box: Box, name: str) -> tuple[list[Chain], l
     moved = [rejoined(box, part, name, chain.lines) for part, chain in zip(rows, chains, strict=True)]
     told = any(a is not b for a, b in zip(rows, moved, strict=True))
     whole = [replace(chain, rows=part) for chain, part in zip(chains, moved, strict=True)]
-    notes = [BY_NEAREST, APART] if len(chains) > 1 else [BY_NEAREST]
-    return whole, [f"{name}: {note}" for note in notes] if told else []
+    whole, notes = together(box, whole)
+    return whole, [f"{name}: {note}" for note in ([BY_NEAREST] if told else []) + notes]
 
 
 def _doubt(chain: Chain, place: int, name: str) -> str:

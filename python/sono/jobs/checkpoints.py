@@ -12,7 +12,7 @@ from typing import Any
 from sono import formats
 from sono.formats import FormatError
 
-VERSION = 8
+VERSION = 9
 """Of the state's content; one that was written with another is refused."""
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from sono.curve import forces, measure
+from sono.curve import Curve, forces, measure
 from sono.formats import FormatError
 from sono.formats.ropefile import STOPPED, TIGHT
 from sono.invariants import fingerprint
@@ -41,7 +41,7 @@ class Earlier:
         """Tell whether the earlier search was finished and did what this one, of so many trials, is to do."""
         done = self.trials >= trials or self.limit >= (job.time_limit or math.inf)
         edges = has_edges(sum(map(len, self.rope.curve)), self.rope.length, job.dl)
-        return done and self.seed == job.seed and edges and self.rope.tight and self.finished
+        return done and self.seed == job.seed and edges and self.rope.converged and self.finished
 
     def stays(self, new: Minimum, finer: Callable[[Minimum, int], Minimum | None]) -> bool:
         """Tell whether the rope is to stay there: both are compared on the finer edges.
@@ -50,7 +50,7 @@ class Earlier:
         vertices, if it can.
         """
         old, dl = self.rope, measure(new.curve).dl
-        if old.tight and not new.tight:
+        if old.converged and not new.converged:
             return True
         old_dl = float(self.row["dl"] or 0) / float(self.row["r_s"] or 1)
         if same_edges(old_dl, dl):
@@ -80,7 +80,8 @@ def left_in(job: Quest, origin: str, source: Source, look: Watch) -> Earlier | N
     residual = patiently(partial(forces, file.components), look).residual
     tight = residual <= KEPT_RESIDUAL
     row = as_row(job.name, output, measures, status=TIGHT if tight else STOPPED, residual=residual)
-    rope = Minimum(0, measures.l_a or math.inf, tight, residual=residual, curve=file.components, met=[])
+    length, curve = measures.l_a or math.inf, Curve(file.components)
+    rope = Minimum(0, length, tight, residual=residual, curve=curve, met=[])
     finished, work = header.status == TIGHT, header.searched
     if not work or not work.trials:
         return Earlier(row, rope, finished)

@@ -225,7 +225,7 @@ class Hunt:
             yield Result(
                 None, f"{name}: the time limit of {self.job.time_limit:g} s was reached before {what}"
             )
-        elif not minima[0].tight:
+        elif not minima[0].converged:
             yield Result(None, f"{name}: its shortest rope did not get tight")
         elif not self.has_edges(minima[0]):
             yield Result(None, f"{name}: its ropes did not come to edges of {self.job.dl:g}")
@@ -272,4 +272,4 @@ class Hunt:
 
 
 def _status(minimum: Minimum) -> str:
-    return TIGHT if minimum.tight else STUCK
+    return TIGHT if minimum.converged else STUCK

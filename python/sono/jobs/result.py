@@ -1,6 +1,6 @@
 """What every job gives: rows, and what the user should hear."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -29,8 +29,8 @@ def as_row(name: str, file: str | None, measures: Measures, **more: Any) -> Row:
     return {"knot": name, "file": file, **measures.to_dict(), **more}
 
 
-def shape_of(curve: Components) -> dict[str, Any]:
-    """Return the descriptors of a curve as a row has them. Raises `CurveError`."""
-    found = descriptors(curve).to_dict()
+def shape_of(curve: Components, rings: bool | Sequence[bool] = True) -> dict[str, Any]:
+    """Return the descriptors of a curve as a row has them; not all need be `rings`. Raises `CurveError`."""
+    found = descriptors(curve, rings).to_dict()
     eigenvalues = enumerate(found.pop("gyration"), 1)
     return found | {f"gyration_{k}": value for k, value in eigenvalues}

@@ -11,7 +11,7 @@ import numpy as np
 
 from sono import formats, starts
 from sono.curve import Components
-from sono.formats import Close, FormatError, Raw, VertexFile
+from sono.formats import Ends, FormatError, Raw, VertexFile
 
 _OF_FILES = "./\\"
 """What looks like a file, but for names of knots such as 5.2.1 and 5/2."""
@@ -47,7 +47,7 @@ class Source:
     """
 
     given: str
-    close: Close | None = None
+    close: Ends | None = None
     found: tuple[str, Raw] | VertexFile | FormatError | None = None
 
     def __str__(self) -> str:
@@ -102,7 +102,7 @@ class Source:
             return replace(self, found=error)
 
 
-def curves(given: str, close: Close | None = None) -> list[Source]:
+def curves(given: str, close: Ends | None = None) -> list[Source]:
     """Give the curves of a source: several, each called FILE:KEY, if it is a file that holds several.
 
     Only such files are read here, and standard input.

@@ -149,7 +149,7 @@ class Task:
             trials = f"{len(tight.shapes)} trials at n = {sum(map(len, self.run.shape or []))}"
             lost = "".join(f"; {times} failed: {why}" for why, times in Counter(tight.failed).items())
             length = "L_p" if self.run.shape and measure(self.run.shape).l_a is None else "L_a"
-            notes += [f"{trials} ended at {length} {hits}; the best was taken{lost}"]
+            notes += [f"{trials} ended at {length} {hits}; the best was taken{lost}{_disagreement(found)}"]
         return notes
 
     def deliver(self, n: Target, tight: Tight, status: str) -> tuple[Row, str | None]:
@@ -252,3 +252,10 @@ def _header(job: Order, file: VertexFile, tight: Tight, status: str) -> list[str
         job.name, status, tight.measures, made=made, physics=physics, origin=made_from(job, file)
     )
     return header.lines()
+
+
+def _disagreement(found: Counter[str]) -> str:
+    """Say what to do where the best of several ends was met but once: there may be a shorter one."""
+    if len(found) < 2 or found[min(found, key=float)] > 1:
+        return ""
+    return "; these disagree, and the best was met but once: `sono search` tries more shapes"

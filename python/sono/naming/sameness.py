@@ -137,7 +137,7 @@ class _Type:
             if None not in (value, theirs[key]) and value != theirs[key]:
                 return key
         if self._is_named_unlike(other):
-            return "names"
+            return "names in the table"
         if _is_one(self, other):
             return PROVEN
         several = any(prime.may_be or len(prime.names) > 1 for prime in self.primes + other.primes)

@@ -11,7 +11,7 @@ from typing import Any, Self, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sono.curve import Components, Measures, measure
+from sono.curve import Components, Curve, Measures, measure
 from sono.records import Drawn, Record
 
 Radii: TypeAlias = NDArray[np.float64]
@@ -52,21 +52,21 @@ class Shape:
 class Minimum(Record, Drawn):
     """A refined rope, the variant that led there, and the number of trials that did.
 
-    `length` is its L_a, `tight` tells whether the polish reached its end, `residual` is the largest force
+    `length` is its L_a, `converged` tells whether the polish reached its end, `residual` is the largest force
     left over, if that is known, and `met` has the radii of gyration of the coarse shapes that were refined
     to it.
 
     >>> import sono
     >>> best = sono.search("3_1", trials=1)[0]
-    >>> best.tight, best.hits, best.length == best.measures.l_a
+    >>> best.converged, best.hits, best.length == best.measures.l_a
     (True, 1, True)
     """
 
     variant: int
     length: float
-    tight: bool
+    converged: bool
     residual: float | None
-    curve: Components
+    curve: Curve
     met: list[Radii]
     hits: int = 0
 
@@ -76,9 +76,9 @@ class Minimum(Record, Drawn):
         return cls(
             shape.variant,
             shape.length,
-            tight=False,
+            converged=False,
             residual=None,
-            curve=shape.curve or [],
+            curve=Curve(shape.curve or []),
             met=[shape.radii],
             hits=shape.hits,
         )
@@ -95,7 +95,7 @@ class Minimum(Record, Drawn):
 
 def rank(minimum: Minimum) -> tuple[bool, float]:
     """Order tight ropes before others, then the shorter before the longer."""
-    return not minimum.tight, minimum.length
+    return not minimum.converged, minimum.length
 
 
 def same_edges(one: float, other: float) -> bool:

@@ -16,7 +16,7 @@ from typing import Any, Protocol, Self, TypeAlias, TypeVar
 
 import numpy as np
 
-from sono.curve import measure, packed, unpacked
+from sono.curve import Curve, measure, packed, unpacked
 from sono.invariants import fingerprint
 from sono.searching.minima import (
     SHORTER_SHAPE,
@@ -245,8 +245,8 @@ def _shape(state: dict[str, Any]) -> Shape:
 
 
 def _minimum(state: dict[str, Any]) -> Minimum:
-    curve = unpacked(state["curve"]) or []
+    curve = Curve(unpacked(state["curve"]) or [])
     measures = measure(curve)
     intact = max(abs(measures.r_s - 1), measures.dispersion) <= INTACT
-    own = {"curve": curve, "length": measures.l_a_or_l_p, "tight": bool(state["tight"]) and intact}
+    own = {"curve": curve, "length": measures.l_a_or_l_p, "converged": bool(state["converged"]) and intact}
     return Minimum(**state | own | {"met": [np.array(radii, float) for radii in state["met"]]})

@@ -12,7 +12,7 @@ from typing import Self, TypeAlias
 
 from sono import starts
 from sono._core import Collapse, PanicError, Polish
-from sono.curve import Components
+from sono.curve import Components, Curve
 from sono.invariants import Fingerprint, TooEntangledError, fingerprint
 from sono.searching.minima import Minimum, Shape, has_edges, radii_of_gyration, rank
 from sono.starts.scramble import scramble
@@ -130,7 +130,7 @@ def finish(minimum: Minimum, n: int, watch: Watch = unwatched) -> Minimum | None
     return replace(
         minimum,
         length=tight.measures.l_a_or_l_p,
-        tight=tight.converged,
+        converged=tight.converged,
         residual=tight.residual,
         curve=tight.curve,
     )
@@ -168,9 +168,9 @@ def _replaced(minimum: Minimum, polish: Polish) -> Minimum:
     return replace(
         minimum,
         length=status_of(polish).best.l_a_or_l_p,
-        tight=_is_tight(polish),
+        converged=_is_tight(polish),
         residual=status.residual,
-        curve=polish.best(),
+        curve=Curve(polish.best()),
     )
 
 

@@ -1,12 +1,13 @@
 """Isotopic entangling: a curve of the same type that looks nothing like the one it came from."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sono import _core
 from sono.curve import Components
 
 Map: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -14,6 +15,9 @@ Map: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 MOST = 5_000
 """Vertices of a curve that is scrambled, whose distances are all compared: 1 GB."""
+
+LOOSENINGS = 4
+"""How often a curve is looked at, each time looser, before it is taken as thin as it is."""
 
 
 def scramble(
@@ -24,32 +28,57 @@ def scramble(
     A swirl turns every sphere about a centre by an angle that fades with its radius; let the angle grow from
     zero, and it is an isotopy of all space, so the image has the knot type of the curve. The polygon has the
     type of the image because its edges are halved until they are shorter than half a rope radius, and a swirl
-    after which the curve would not hold a rope of that radius, 600 radii long at most, is left out. The same
-    seed gives the same curve. `watch` is called before each swirl; what it raises passes through. Raises
-    ValueError for a curve that touches itself, or too thin a rope, or more than `MOST` vertices.
+    after which the curve would not hold a rope of that radius, 600 radii long at most, or half as long again
+    as it was, is left out. A curve without room for that is loosened first. The same seed gives the same
+    curve. `watch` is called before each swirl; what it raises passes through. Raises ValueError for a curve
+    that touches itself, or too thin a rope, or more than `MOST` vertices.
     """
     if (n := sum(map(len, curve))) > MOST:
         raise ValueError(f"{n:,} vertices are too many to scramble; {MOST:,} are the most")
     random = np.random.default_rng(seed)
     curve, radius = _rope(curve)
+    longest = max(600 * radius, 1.5 * _length(curve))
     for _ in range(swirls):
         watch()
         swirl = _swirl(random, np.vstack(curve))
         moved = [_image(component, swirl, radius / 2) for component in curve]
-        if _length(moved) <= 600 * radius and _holds_rope(moved, radius):
+        if _length(moved) <= longest and _holds_rope(moved, radius):
             curve = moved
     return curve
 
 
 def _rope(curve: Components) -> tuple[Components, float]:
-    """Return `curve` finely sampled, and the radius of a rope in it that leaves room to move."""
+    """Return `curve` finely sampled, and the radius of a rope in it that leaves room to move.
+
+    One that is drawn too thin is loosened first, by isotopic moves.
+    """
+    loose = curve
+    for _ in range(LOOSENINGS):
+        if found := _held(loose, (100, 200, 400)):
+            return found
+        loose = _loosened(loose)
+    if found := _held(curve, (800, 1600)):
+        return found
+    raise ValueError("the curve comes closer to itself than 1/400 of its length, and cannot be loosened")
+
+
+def _held(curve: Components, slenderness: Sequence[int]) -> tuple[Components, float] | None:
+    """Return `curve` and the radius, likewise, of the first slenderness at which there is room to move."""
     length = _length(curve)
-    for slenderness in (100, 200, 400):
-        radius = length / slenderness
+    for radius in (length / times for times in slenderness):
         fine = [_image(component, np.copy, radius / 2) for component in curve]
         if _holds_rope(fine, 2 * radius):
             return fine, radius
-    raise ValueError("the curve touches itself, or comes closer to itself than 1/100 of its length")
+    return None
+
+
+def _loosened(curve: Components) -> Components:
+    """Return the curve with more room round it; sampled more finely, so that no corner stays sharp."""
+    length = _length(curve)
+    try:
+        return _core.loosen([_image(component, np.copy, length / 100) for component in curve])
+    except _core.CurveError as error:
+        raise ValueError(f"the curve touches itself, or is too entangled to scramble: {error}") from error
 
 
 def _swirl(random: np.random.Generator, points: NDArray[np.float64]) -> Map:

@@ -28,6 +28,7 @@ _WORDS = {
     **{"figureeight": "4_1", "figure8": "4_1", "cinquefoil": "5_1", "threetwist": "5_2", "stevedore": "6_1"},
     **{"overhand": "3_1", "pentafoil": "5_1", "septafoil": "7_1", "endless": "7_4", "carrickmat": "8_18"},
     **{"granny": "3_1#3_1", "square": "3_1#m3_1", "reef": "3_1#m3_1"},
+    **{"conway": "11n_34", "kinoshitaterasaka": "11n_42", "kt": "11n_42"},
 }
 """Names in words, without spaces and hyphens."""
 
@@ -144,6 +145,8 @@ def _series(name: str, names: Sequence[str], m: str) -> str | None:
 
 def _near(name: str, names: Sequence[str], m: str) -> str:
     """Return the name with the same numbers that is spelled nearest, or else what names there are."""
+    if name[:1].isdigit():  # a letter there may have been read for a number
+        name = name.translate(str.maketrans("lIoO", "1100"))
     digits = re.sub(r"\D", "", name)
     alike = {known.casefold(): known for known in (*names, *_WORDS) if re.sub(r"\D", "", known) == digits}
     near = difflib.get_close_matches(name.casefold(), alike, n=1, cutoff=0.6 if digits else 0.8)

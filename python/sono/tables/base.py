@@ -59,6 +59,15 @@ class TableWriter:
         return ""
 
 
+def plain(name: str) -> str:
+    """Return the name of a knot without what files add to it.
+
+    >>> plain("8_20.n480.best2"), plain("m3_1.dl0.05")
+    ('8_20', 'm3_1')
+    """
+    return re.sub(r"(\.tight|\.n\d+|\.dl\d*\.?\d+|\.best\d*)+$", "", name)
+
+
 def rounded(row: Row, column: Column) -> str:
     """Show a value to a reader."""
     value = row.get(column.key)

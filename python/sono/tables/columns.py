@@ -1,7 +1,9 @@
 """The columns that a table may have, and the rows that fill them."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 Value = str | int | float | None
 
@@ -116,7 +118,15 @@ def key_of(name: str) -> str:
     try:
         return _KEYS[name.strip().casefold()]
     except KeyError:
-        raise ValueError(f"unknown column {name!r}; the columns are: {', '.join(COLUMNS)}") from None
+        raise ValueError(f"unknown column {name!r}; {_nearest(name)}") from None
+
+
+def _nearest(name: str) -> str:
+    """Name the columns that may be meant, or all."""
+    letters = {re.sub(r"\W|_", "", known): key for known, key in _KEYS.items()}
+    meant = get_close_matches(re.sub(r"\W|_", "", name.casefold()), letters, 3, 0.7)
+    keys = list(dict.fromkeys(letters[word] for word in meant))
+    return f"did you mean {' or '.join(keys)}?" if keys else f"the columns are: {', '.join(COLUMNS)}"
 
 
 def column_of(name: str) -> Column | None:

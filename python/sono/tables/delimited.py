@@ -5,17 +5,21 @@ import io
 from collections.abc import Sequence
 
 from sono.tables.base import TableWriter, exact
-from sono.tables.columns import Row
+from sono.tables.columns import Row, Value
 
 
 class _Delimited(TableWriter):
     delimiter: str
+    unknown = "-"
 
     def _head(self) -> str:
         return self._joined([column.key for column in self._columns])
 
     def _line(self, row: Row) -> str:
-        return self._joined([exact(row.get(column.key)) for column in self._columns])
+        return self._joined([self._cell(row.get(column.key)) for column in self._columns])
+
+    def _cell(self, value: Value) -> str:
+        return self.unknown if value is None else exact(value)
 
     def _joined(self, cells: Sequence[str]) -> str:
         line = io.StringIO()
@@ -30,6 +34,7 @@ class Tsv(_Delimited):
 
 
 class Csv(_Delimited):
-    """Commas between the cells, and quotes where they are needed."""
+    """Commas between the cells, and quotes where they are needed; what is not known is empty."""
 
     delimiter = ","
+    unknown = ""

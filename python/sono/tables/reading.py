@@ -79,10 +79,10 @@ def _of_cells(name: str, text: str) -> Iterator[Row]:
         for cells in filter(None, lines):
             where = f"{name}:{lines.line_num}"
             if len(cells) != len(header):
-                wrong = f"it has {len(cells)} cells for {len(header)} columns; a - stands for none"
+                wrong = f"it has {len(cells)} cells for {len(header)} columns; a - or nothing stands for none"
                 raise FormatError(f"{where}: does not fit the header: {wrong}")
             row = dict(zip(header, cells, strict=True))
-            yield _row(where, {key: None if cell == "-" else cell for key, cell in row.items()})
+            yield _row(where, {key: None if cell in ("-", "") else cell for key, cell in row.items()})
     except csv.Error as error:
         raise FormatError.at(name, lines.line_num, f"is no row: {error}; {READ}") from error
 

@@ -79,13 +79,15 @@ def sources() -> dict[str, Source]:
 def values(name: str) -> list[Row]:
     """Return what is published on what has this name, in the order of rank and length.
 
-    The rows have `knot`, `published`, over the radius, `kind`, `source`, and `printed` over what `per` says.
+    The rows have `knot`, `published`, over the radius, `kind`, `source`, and `printed` over what `per` says;
+    `rounding` is half a unit of the last digit printed, over the radius.
     """
     name = starts.canonical(name)
     rings = RINGS.get(name) or int((re.fullmatch(r"chain(\d{1,9})", name) or [0, 0])[1])
     rows = [_row(name, _chain(rings), "exact", CHAINS)] if rings else []
     rows += [
-        _row(name, float(row["printed"]), row["kind"], row["source"]) for row in _printed().get(name, [])
+        _row(name, float(row["printed"]), row["kind"], row["source"], _half_a_unit(row["printed"]))
+        for row in _printed().get(name, [])
     ]
     return sorted(rows, key=lambda row: (RANKS[str(row["kind"])], row["published"]))
 
@@ -98,10 +100,27 @@ def _printed() -> dict[str, list[dict[str, str]]]:
     return found
 
 
-def _row(knot: str, printed: float, kind: str, source: str) -> Row:
+def _row(knot: str, printed: float, kind: str, source: str, rounding: float = 0.0) -> Row:
     per = sources()[source].per
     length = printed * FACTORS[per]
-    return {"knot": knot, "published": length, "kind": kind, "source": source, "printed": printed, "per": per}
+    return {
+        **{"knot": knot, "published": length, "kind": kind, "source": source, "printed": printed, "per": per},
+        "rounding": rounding * FACTORS[per],
+    }
+
+
+def _half_a_unit(printed: str) -> float:
+    """Return half a unit of the last digit.
+
+    >>> _half_a_unit("58.0060"), _half_a_unit("91")
+    (5e-05, 0.5)
+    """
+    return 0.5 * 10.0 ** -len(printed.partition(".")[2])
+
+
+def has_rings(name: str) -> bool:
+    """Tell whether the name, that of `starts.canonical`, is of a Hopf link or chain, or a sum with one."""
+    return any(part in RINGS or part.startswith("chain") for part in name.split("#"))
 
 
 def _chain(rings: int) -> float:

@@ -37,12 +37,13 @@ class Settings(Record):
 
     The polish's: its barrier parameter mu begins at `first_mu` dl^3, in [1e-6, 10], and ends at `last_mu`, in
     [1e-14, 1e-4], or on a level that only leads to the next at `passing_mu` dl^3, in [1e-9, 10]. Where the
-    perturbed conditions hold to `centred` mu, in [0.1, 100], mu falls to `mu_factor` mu, in [0.01, 0.9], or
-    to mu^`mu_power`, in [1, 2]. Contacts repel within `contact_range` sqrt mu, in [0.1, 100], of
-    |v_i - v_j|^2 - 4, but at least `least_contact_range` dl^2, in [0.001, 1]. A step is at most `longest_way`
-    long, in [0.001, 0.1], uses up `most_used` of a constraint at most, in [0.5, 0.999], and lowers the
-    barrier function by `least_descent` of what its slope promises at least, in [1e-8, 0.4]; multipliers stay
-    within the factor `multiplier_range`, in [2, 1e10]. A rope that glides at its first mu for `patience`
+    perturbed conditions hold to `centred` mu, in [0.1, 100], and forces balance to `balanced` mu, in
+    [0.001, 100], mu falls to `mu_factor` mu, in [0.01, 0.9], or to mu^`mu_power`, in [1, 2]. Contacts repel
+    within `contact_range` sqrt mu, in [0.1, 100], of |v_i - v_j|^2 - 4, but at least `least_contact_range`
+    dl^2, in [0.001, 1]. A step is at most `longest_way` long, in [0.001, 0.1], uses up `most_used` of a
+    constraint at most, in [0.5, 0.999], and lowers the barrier function by `least_descent` of what its slope
+    promises at least, in [1e-8, 0.4]; multipliers stay within the factor `multiplier_range`, in [2, 1e10]. A
+    rope that glides at its first mu for `patience`
     steps, but for one that falls below `gliding_share` of its length, in [0, 1], begins anew with
     `restart_factor` times that, in [1, 1000], up to `most_restarts` times, at most 100. After
     `most_iterations` it is stuck; it is tight where digits end below `tight_residual`, in [1e-12, 1e-4].
@@ -67,6 +68,7 @@ class Settings(Record):
     mu_factor: float = 0.2
     mu_power: float = 1.2
     centred: float = 10.0
+    balanced: float = 0.1
     contact_range: float = 3.0
     least_contact_range: float = 0.1
     longest_way: float = 0.1
