@@ -416,6 +416,11 @@ def test_a_solid_is_no_curve(sono: Sono, suffix: str) -> None:
         assert f"k.{suffix}:1: this is a solid, not a curve; give the curve, or the knot's" in result.stderr
 
 
+def test_a_solid_in_words_is_no_curve_either(folder: Path, sono: Sono) -> None:
+    (folder / "k.stl").write_text("solid k\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n")
+    assert "k.stl:1: this is a solid, not a curve" in sono("measure", "k.stl").stderr
+
+
 def test_what_the_message_says_of_the_rope_is_what_it_takes(sono: Sono) -> None:
     for name in ("4_1", "Whitehead"):
         result = sono("export", name, "-o", f"{name}.3mf", "--rope-diameter", "50mm", "--tolerance", "0.5")

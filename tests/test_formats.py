@@ -355,7 +355,8 @@ def test_unwritable_files_are_named(tmp_path: Path) -> None:
     path = tmp_path / "absent" / "k.xyz"
     with pytest.raises(FormatError) as caught:
         formats.write(path, [np.array(TRIANGLE)])
-    assert str(caught.value) == f"{path}: cannot be written: No such file or directory"
+    cure = f"make the folder {path.parent} first, or name another one"
+    assert str(caught.value) == f"{path}: cannot be written: No such file or directory; {cure}"
     with pytest.raises(FormatError) as caught:
         formats.write(tmp_path, [np.array(TRIANGLE)])
     assert str(caught.value) == f"{tmp_path}: cannot be written: Is a directory"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import sono as package
 from sono.figures.plot.sheet import COLOURS
-from sono.figures.turning import turned
+from sono.figures.turning import facing, turned
 from sono.figures.view import WEAKEST, curvature, page, titled
 
 EVIL = "</script><script>alert(1)</script><img src=x onerror=alert(2)> $title ${data} & \"'"
@@ -156,6 +156,16 @@ def test_several_curves_are_turned_alike(name: str) -> None:
         for parts, frame in ((curve, here), (other, there))
     ]
     np.testing.assert_allclose(boxes[0], boxes[1], atol=0.2)
+
+
+def test_no_ring_of_the_borromean_ones_is_seen_from_its_edge() -> None:
+    for ring in facing(list(package.start("Borromean", known=True))):
+        normal = np.linalg.svd(ring - ring.mean(axis=0))[2][2]
+        assert 0.4 < abs(normal[2]) < 0.75
+    (frame,) = turned([package.start("Borromean", known=True)])
+    assert np.linalg.det(frame) == pytest.approx(1)  # a picture is no mirror image
+    widest = np.vstack(facing(list(package.start("3_1", known=True))))
+    assert np.ptp(widest, axis=0).argmin() == 2
 
 
 def test_a_curve_of_another_kind_is_turned_too() -> None:

@@ -18,7 +18,7 @@ ANGLES = (3, 3, 1, 0.3, 0.3, 0.1, 0.1, 0.03, 0.01, 0.003)
 def flat(curve: Components, radius: float) -> list[Floats]:
     """Turn a curve so that its tube lies flat: the longest edge of its box is along x, the shortest along z.
 
-    >>> turned = flat([np.array([[0.0, 3, 0], [0, -3, 0], [0, 0, 5], [0, 0, -5]])], radius=1)
+    >>> turned = flat([np.array([[0.0, 3, 5], [0, -3, 5], [0, -3, -5], [0, 3, -5]])], radius=1)
     >>> np.ptp(turned[0], axis=0).round(1).tolist()
     [10.0, 6.0, 0.0]
     """

@@ -37,7 +37,7 @@ class Lengths:
         The tube is wider than the line by its own diameter, that of the rope less the gap. Raises
         `ValueError` where the gap leaves nothing.
 
-        >>> Lengths(size=80).of(8), Lengths().of(8)
+        >>> round(Lengths(size=80).of(8), 2), Lengths().of(8)
         (16.08, 6.0)
         """
         diameter = DIAMETER if self.diameter is None else self.diameter

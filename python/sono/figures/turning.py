@@ -13,6 +13,12 @@ ROUND = 1.15
 """A rope is round, and turned so that what is farthest from its axis is at the top, if its two largest
 radii of gyration are in no larger ratio; else it lies along its longest axis."""
 
+EVEN = 1.05
+"""Where all three radii of gyration are within such a ratio, no side is the widest: rings at right angles,
+as the Borromean ones are, hide each other when seen along an axis, and are seen along the axes' diagonal."""
+
+_DIAGONAL = np.array([[-1, 1, 0], [-1, -1, 2], [1, 1, 1]]) / np.sqrt([[2], [6], [3]])
+
 
 def turned(curves: Sequence[Components]) -> list[Floats]:
     """Return a rotation (3, 3) for each curve, whose rows are the directions right, up and to the eye.
@@ -54,6 +60,8 @@ def principal(points: Floats) -> Floats:
     skew = ((arms @ axes) ** 3).sum(axis=0)
     to_eye, _, along = (axes * np.where(skew < 0, -1, 1)).T
     turn = np.array([along, np.cross(to_eye, along), to_eye])
+    if squares[2] < EVEN**2 * squares[0]:
+        turn = _DIAGONAL @ turn
     if squares[2] < ROUND**2 * squares[1]:
         turn = _farthest_up(arms @ turn.T) @ turn
     return turn

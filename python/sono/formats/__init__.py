@@ -168,8 +168,8 @@ SUFFIXES = {
 }
 """The format of a file by its suffix."""
 
-SOLIDS = (".stl", ".3mf", ".glb")
-"""Suffixes of what is no curve, but printed."""
+SOLID, SOLIDS = (b"glTF", b"ply\n", b"ply\r", b"solid "), (".stl", ".3mf")
+"""What begins a file of triangles, and suffixes of such files that begin otherwise, and are no text."""
 
 LOOSE = {PLAIN, "xyz", "csv"}
 """The formats whose suffixes say little of what is in a file: plain rows are called .xyz and .csv as well."""
@@ -239,7 +239,7 @@ def may_hold_several(path: str) -> bool:
 def _format_of(name: str, data: bytes) -> str:
     """Tell which format a file of this name has that begins like this. Raises `FormatError`."""
     refuse_trajectory(name, _suffix(name), data)
-    if _suffix(name) in SOLIDS or data.startswith((b"glTF", b"ply\n", b"ply\r")):
+    if data.startswith(SOLID) or (_suffix(name) in SOLIDS and b"\0" in data[:80]):
         raise FormatError.at(
             name, 1, "this is a solid, not a curve; give the curve, or the knot's name, that it was made of"
         )

@@ -32,6 +32,12 @@ SHADE = 0.6
 SOFT = 0.07
 """How wide the edges of shadows are, in radii."""
 
+_AROUND = np.sqrt(np.arange(18) / 17)[:, None] * np.array(
+    [(np.cos(2.4 * k), np.sin(2.4 * k)) for k in range(18)]
+)
+"""Where light is looked for round a point, in `SOFT`: a sunflower, in which no two are in line, so that the
+edge of a shadow has as many shades, and no bands."""
+
 OUTLINE = 0.4
 """By so many radii a strand rises above what is behind it where its outline is drawn."""
 
@@ -145,13 +151,12 @@ def _shadow(balls: Balls, points: Floats, step: float) -> Floats:
     seen = Surface.of(lit, low, step, (height, width))
     where = points @ FROM_LIGHT.T
     column, row = np.rint((where[:, :2] - low) / step).astype(int).T
-    reach = round(SOFT * balls.radius / step)
+    reach = SOFT * balls.radius / step
     shadow = np.zeros(len(points))
-    for right in (-reach, 0, reach):
-        for up in (-reach, 0, reach):
-            met = seen.height[(row + up).clip(0, height - 1), (column + right).clip(0, width - 1)]
-            shadow += met > where[:, 2] + SOFT * balls.radius
-    return shadow / 9
+    for right, up in np.rint(reach * _AROUND).astype(int):
+        met = seen.height[(row + up).clip(0, height - 1), (column + right).clip(0, width - 1)]
+        shadow += met > where[:, 2] + SOFT * balls.radius
+    return shadow / len(_AROUND)
 
 
 def _averaged(fine: Floats) -> Floats:
