@@ -13,6 +13,9 @@ from sono.tables.columns import Row
 KNOTS = ("knot", "other_knot")
 """Columns of names that are typeset."""
 
+BOUNDS = ("certified", "sharp")
+"""Columns of numbers that are texts, for their rounding."""
+
 _PRIME = r"m?(?:\d+[an]?(?:\^\d+)?_\d+|L\d+[an]\d+(?:\{[\d,]+\})?|T\(-?\d+,-?\d+\))"
 
 
@@ -37,7 +40,7 @@ class Latex(TableWriter):
             super().close()
 
     def _head(self) -> str:
-        shape = "".join("r" if column.spec else "l" for column in self._columns)
+        shape = "".join("r" if column.spec or column.key in BOUNDS else "l" for column in self._columns)
         return (
             f"% {CAPTION}\n\\begin{{tabular}}{{{shape}}}\n\\hline\n"
             f"{self._ampersands([column.latex for column in self._columns])}\\hline\n"
