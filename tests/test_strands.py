@@ -255,7 +255,7 @@ def test_trajectories_are_refused_with_what_writes_others(name: str, data: bytes
         (["measure", "--columns", "n,determinant"], "`sono identify` has it"),
         (["measure", "--columns", "published"], "there are: knot, file, n"),
         (["measure", "--columns", "rg"], "did you mean radius_of_gyration?"),
-        (["measure", "--columns", "writh"], "is it writhe"),
+        (["measure", "--columns", "writh"], "did you mean writhe"),
     ],
 )
 def test_columns_that_a_command_has_not(arguments: list[str], said: str, sono: Sono) -> None:

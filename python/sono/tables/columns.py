@@ -123,9 +123,10 @@ def key_of(name: str) -> str:
 
 def _nearest(name: str) -> str:
     """Name the columns that may be meant, or all."""
+    word = name.strip().casefold()
     letters = {re.sub(r"\W|_", "", known): key for known, key in _KEYS.items()}
-    meant = get_close_matches(re.sub(r"\W|_", "", name.casefold()), letters, 3, 0.7)
-    keys = list(dict.fromkeys(letters[word] for word in meant))
+    meant = [letters[near] for near in get_close_matches(re.sub(r"\W|_", "", word), letters, 3, 0.7)]
+    keys = list(dict.fromkeys(meant or [_KEYS[near] for near in get_close_matches(word, _KEYS, 3, 0.65)]))
     return f"did you mean {' or '.join(keys)}?" if keys else f"the columns are: {', '.join(COLUMNS)}"
 
 
