@@ -40,6 +40,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
+use crate::beads::COARSE;
 use crate::geometry::curve::Curve;
 use crate::geometry::neighbours::Pair;
 use crate::measures::{Measures, measure};
@@ -187,6 +188,9 @@ impl Polish {
         let mut products = terms.iter().zip(self.z.iter());
         self.residual = left_over(&self.rope.curve, terms, &self.z).largest(&self.rope.curve);
         self.excess = products.clone().map(|(t, z)| z * t.g).sum();
+        // On edges so coarse that a rope may slide until some of them are slack, it had better not slide far.
+        let is_coarse = self.rope.l.iter().any(|&l| l > COARSE);
+        let balanced = if is_coarse { centred } else { balanced };
         // At the last mu, and where that is as far as the digits go, balance may be as rough as products.
         let is_balanced = self.residual < (balanced * self.mu).max(centred * self.last_mu);
         is_balanced && products.all(|(t, z)| barrier.excess(t, *z).abs() < most)
