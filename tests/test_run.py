@@ -367,3 +367,11 @@ def test_ropes_of_the_coarsest_edges_are_tight_one_after_another(knot: str) -> N
         assert tight.converged, run.targets[0]
         assert tight.measures.dispersion < 1e-6
         run.next_target()
+
+
+def test_a_rope_too_entangled_to_compare_is_kept_by_its_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_entangled(_: object) -> None:
+        raise sono.TooEntangledError("over 1000 crossings")
+
+    monkeypatch.setattr("sono.tightening.run.fingerprint", too_entangled)
+    assert tighten(starts.start("3_1"), 60, trials=1).converged

@@ -204,9 +204,15 @@ class Run:
         watch(Progress(stage, n, plan.n, plan.tried + 1, status))
 
     def _check_type(self, look: Callable[[], None]) -> None:
-        """Compare what a rung has ended in with the curve that was given."""
+        """Compare what a rung has ended in with the curve that was given, if it is not too entangled.
+
+        Then it is of that type all the same, as each of its moves was shown to be an isotopy.
+        """
         assert self.engine is not None
-        found = patiently(partial(fingerprint, self.engine.best()), look)
+        try:
+            found = patiently(partial(fingerprint, self.engine.best()), look)
+        except TooEntangledError:
+            return
         self.type = self.type or found
         if found != self.type:
             stage, n = self.plan.rung
