@@ -17,7 +17,7 @@ import hashlib
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from decimal import Decimal
 from fractions import Fraction
 from itertools import accumulate, pairwise
@@ -282,16 +282,21 @@ def check_decided_by(decided: dict[str, Any], loops: list[Loop], four_r2: int) -
 
 def main() -> int:
     """Check CERTIFICATE FILE; return the exit code."""
+    return command(check, "CERTIFICATE", "l_c")
+
+
+def command(check: Callable[[str, str], dict[str, Any]], kind: str, bound: str) -> int:
+    """Check what the command line names, a proof of this `kind` and a FILE; return the exit code."""
     if len(sys.argv) != 3:
-        print("usage: python check_certificate.py CERTIFICATE FILE", file=sys.stderr)
+        print(f"usage: python check_{kind.lower()}.py {kind} FILE", file=sys.stderr)
         return 2
-    _, certificate, file = sys.argv
+    _, proof, file = sys.argv
     try:
-        l_c = check(certificate, file)["l_c"]
+        proven = check(proof, file)[bound]
     except (RefusedError, OSError) as error:
-        print(f"{certificate}: refused: {error}", file=sys.stderr)
+        print(f"{proof}: refused: {error}", file=sys.stderr)
         return 1
-    print(f"{certificate}: holds: the type of {file} has a representative of ropelength {l_c} at most")
+    print(f"{proof}: holds: the type of {file} has a representative of ropelength {proven} at most")
     return 0
 
 

@@ -176,17 +176,7 @@ def capsules_apart(one: Capsule, other: Capsule, least: int) -> bool:
 
 def main() -> int:
     """Check THICKNESS FILE; return the exit code."""
-    if len(sys.argv) != 3:
-        print("usage: python check_thickness.py THICKNESS FILE", file=sys.stderr)
-        return 2
-    _, thickness, file = sys.argv
-    try:
-        l_k = check(thickness, file)["l_k"]
-    except (RefusedError, OSError) as error:
-        print(f"{thickness}: refused: {error}", file=sys.stderr)
-        return 1
-    print(f"{thickness}: holds: the type of {file} has a representative of ropelength {l_k} at most")
-    return 0
+    return exact.command(check, "THICKNESS", "l_k")
 
 
 if __name__ == "__main__":
