@@ -193,7 +193,8 @@ def _apart(curve: Components, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
 def _places(curve: Components) -> Iterator[tuple[Floats, Floats, Floats, Floats]]:
     """For the vertices of each component: its number, where they are along it, its length, and the rule."""
     for c, component in enumerate(curve):
-        edges = np.linalg.norm(np.roll(component, -1, axis=0) - component, axis=1)
+        start, end = strands.edges(component, True)
+        edges = np.linalg.norm(end - start, axis=1)
         least = math.pi * measure([component]).min_rad - edges.max()
         at = np.cumsum(edges) - edges
         same = np.ones(len(edges))
