@@ -12,7 +12,7 @@ import click
 
 from sono import tables
 from sono.cli import options, places
-from sono.cli.each import each, rope_of
+from sono.cli.each import each, knot_of, rope_of
 
 if TYPE_CHECKING:
     from sono.certificates import Certificate
@@ -135,11 +135,10 @@ def _proven(source: "Source") -> "tuple[VertexFile, Certificate]":
 
 def _finer(source: "Source", curve: "VertexFile") -> list[str]:
     """Say how to prove less than the atlas's rope of a name does, whose edges are coarse."""
-    from sono import starts
     from sono.curve import measure
     from sono.tables import published
 
-    if not (source.knot and starts.knows(source.knot)):
+    if not knot_of(source):
         return []
     rope = measure(curve.components)
     row = published.extrapolated({"knot": source.name, "n": rope.n, "l_a": rope.l_a, "l_c": rope.l_c})

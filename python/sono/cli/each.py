@@ -70,13 +70,19 @@ def _counted(said: Sequence[str], curves: int) -> str:
     return f"{said[0]} (in {many} curves of the file)"
 
 
+def knot_of(source: "Source") -> str | None:
+    """Return the name of a knot that a source is; None for a file."""
+    from sono import starts
+
+    return source.knot if source.knot and starts.knows(source.knot) else None
+
+
 def file_of(source: "Source", command: str, does: str) -> "VertexFile":
     """Read the file of a command that takes no names of knots, and `does` so. Raises `FormatError`."""
-    from sono import starts
     from sono.formats import FormatError
 
-    if source.knot and starts.knows(source.knot):
-        start = f"`sono start {shlex.quote(source.knot)} | sono {command} -`"
+    if knot := knot_of(source):
+        start = f"`sono start {shlex.quote(knot)} | sono {command} -`"
         raise FormatError(f"{source}: no such file; {command} takes files; {start} {does} a loose start")
     return source.read()
 
@@ -87,7 +93,7 @@ def rope_of(source: "Source") -> "VertexFile":
     from sono.formats import FormatError
     from sono.jobs.sources import as_file
 
-    if not (source.knot and starts.knows(source.knot)):
+    if not knot_of(source):
         return source.read()
     if rope := starts.known(source.given):
         return as_file(source.given, rope, f"{source.name}, the rope of the atlas")

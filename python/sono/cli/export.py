@@ -6,13 +6,14 @@ import shlex
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from sono.cli import options, places
-from sono.cli.each import each, rope_of
+from sono.cli.each import each, knot_of, rope_of
 from sono.cli.options import Function
 
 if TYPE_CHECKING:
@@ -100,11 +101,12 @@ def command(
     maker = _Maker(output, _format(output, format_), _checked(lengths), force)
 
     def export(source: "Source") -> None:
-        path, solid, doubt = maker.written(source)
-        if not quiet:
-            options.complain(f"{path}: {_told(solid)}")
-            if doubt:
-                options.complain(doubt)
+        path, solid, curve = maker.written(source)
+        if quiet:
+            return
+        options.complain(f"{path}: {_told(solid)}")
+        if not knot_of(source) and (doubt := _doubt(source, curve)):
+            options.complain(doubt)
 
     if not places.names_one_file(output):
         places.make_folder(output)
@@ -147,8 +149,9 @@ def _told(solid: "Solid") -> str:
 def _doubt(source: "Source", curve: "Components") -> str:
     """Say that a curve is loose, if forces do not balance on it at all."""
     from sono.curve import forces, measure
+    from sono.patience import patiently
 
-    if forces(curve).residual < LOOSE:
+    if patiently(partial(forces, curve)).residual < LOOSE:
         return ""
     tighten = f"`sono tighten {shlex.quote(source.given)} -o rope.txt`"
     return f"{source}: is loose, of ropelength {measure(curve).l_p:.4g}; {tighten} makes it shorter first"
@@ -164,15 +167,15 @@ class _Maker:
     force: bool
     done: set[str] = field(default_factory=set)
 
-    def written(self, source: "Source") -> "tuple[str, Solid, str]":
-        """Write the solid of a curve; return the file's name, it, and a doubt. Raises `FormatError`."""
+    def written(self, source: "Source") -> "tuple[str, Solid, Components]":
+        """Write the solid of a curve; return the file's name, it, and the curve. Raises `FormatError`."""
         from sono.figures import solidfiles
 
         path, curve = self._path(source), rope_of(source)
         solid = self._made(source, curve)
         solidfiles.write(path, solid, self.format)
         self.done.add(path)
-        return path, solid, _doubt(source, curve.components)
+        return path, solid, curve.components
 
     def _path(self, source: "Source") -> str:
         """Return the name of a file that may be written. Raises `FormatError`."""
