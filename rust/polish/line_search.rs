@@ -14,7 +14,7 @@
 
 use super::barrier::longest_step;
 use super::direction::Direction;
-use super::newton::Step;
+use super::newton::{Change, Step};
 use super::problem::{Multipliers, Surroundings, Unknowns};
 use super::settings::Settings;
 use super::term::Term;
@@ -27,11 +27,11 @@ const MOST_HALVINGS: usize = 40;
 /// Arcs so short are not looked for.
 const LEAST_ARC: f64 = 1e-3;
 
-/// The share `a` of a step, straight or on_arc, and where it leads.
+/// The share `a` of a step, straight or on its arc, and where it leads.
 struct Way {
     a: f64,
-    on_arc: bool,
     to: Direction,
+    dz: Multipliers,
     rope: Unknowns,
     merit: f64,
     margin: f64,
@@ -41,16 +41,18 @@ impl Polish {
     /// Goes as far along a step as possible, on its arc where that lowers the barrier function more than a
     /// part of the straight way; returns whether that is anywhere.
     pub(super) fn take(&mut self, step: &Step, around: &Surroundings) -> bool {
-        let straight = self.search(step, false, around);
-        let is_whole = straight.as_ref().is_some_and(|way| way.a == 1.);
-        let on_arc = if is_whole { None } else { self.search(step, true, around) };
+        let straight = self.search(step, None, around);
+        let on_arc = match straight {
+            Some(Way { a: 1., .. }) => None,
+            _ => self.search_arc(step, around),
+        };
         let ways = [straight, on_arc].into_iter().flatten();
         let lowest = ways.min_by(|a, b| a.merit.total_cmp(&b.merit));
-        let Some(Way { a, on_arc, to, rope, margin, .. }) = lowest else {
+        let Some(Way { a, to, dz, rope, margin, .. }) = lowest else {
             return false;
         };
         self.passages.may(Some(margin));
-        self.z = self.multipliers(&to, &step.dz(a, on_arc), around);
+        self.z = self.multipliers(&to, &dz, around);
         self.rope = rope;
         self.newton.learn(a);
         let thinnest = 0.01 * self.rope.l.iter().copied().fold(f64::MAX, f64::min).powi(2);
@@ -63,17 +65,22 @@ impl Polish {
         true
     }
 
+    fn search_arc(&mut self, step: &Step, around: &Surroundings) -> Option<Way> {
+        let arc = self.newton.arc(step, &around.terms, &self.z, self.barrier())?;
+        self.search(step, Some(&arc), around)
+    }
+
     /// The largest share of the step that lowers the barrier function.
-    fn search(&mut self, step: &Step, on_arc: bool, around: &Surroundings) -> Option<Way> {
+    fn search(&mut self, step: &Step, arc: Option<&Change>, around: &Surroundings) -> Option<Way> {
         let Surroundings { terms, bystanders } = around;
         let barrier = self.barrier();
         let pairs = self.contacts.iter().chain(bystanders).copied();
         let merit = |rope: &Unknowns| barrier.merit(rope, pairs.clone());
         let others = bystanders.iter().map(|&pair| self.rope.contact(pair));
-        let mut a = self.longest_share(step, on_arc, terms.iter().copied().chain(others));
+        let mut a = self.longest_share(step, arc, terms.iter().copied().chain(others));
         let highest = merit(&self.rope);
         for _ in 0..MOST_HALVINGS {
-            let to = step.to(a, on_arc);
+            let to = step.to(a, arc);
             let rope = self.rope.moved(1., &to);
             let least_descent = self.settings.least_descent * a * step.slope;
             // NaN where a bend's course, cubic in l, has led out after all.
@@ -81,7 +88,9 @@ impl Polish {
             if merit <= highest + least_descent + NOISE * highest.abs() {
                 let before = self.rope.curve.vertices();
                 match margin(before, &rope.curve, &self.least, pairs.clone(), 2.) {
-                    Some(margin) => return Some(Way { a, on_arc, to, rope, merit, margin }),
+                    Some(margin) => {
+                        return Some(Way { a, to, dz: step.dz(a, arc), rope, merit, margin });
+                    }
                     None => self.passages.refused += 1,
                 }
             }
@@ -95,16 +104,16 @@ impl Polish {
     fn longest_share(
         &self,
         step: &Step,
-        on_arc: bool,
+        arc: Option<&Change>,
         terms: impl Iterator<Item = Term> + Clone,
     ) -> f64 {
         let most_used = self.settings.most_used;
         let mut a = 1.;
         loop {
-            let to = step.to(a, on_arc);
+            let to = step.to(a, arc);
             let most = (self.way / to.longest_way()).min(1.);
             let share = terms.clone().fold(most, |a, t| a.min(longest_step(&t, &to, most_used)));
-            if share == 1. || !on_arc || a < LEAST_ARC {
+            if share == 1. || arc.is_none() || a < LEAST_ARC {
                 return a * share;
             }
             a *= share.sqrt().clamp(0.5, 0.95);
@@ -131,7 +140,6 @@ mod tests {
 
     use glam::DVec3;
 
-    use super::super::newton::Change;
     use super::*;
     use crate::geometry::curve::Curve;
 
@@ -142,11 +150,12 @@ mod tests {
         Polish::new(&circle, 40, false, 0, Settings::default()).unwrap()
     }
 
-    /// A step whose arc is straight.
-    fn straight(polish: &Polish, to: Direction, dz: Multipliers) -> Step {
-        let to_nowhere = Direction::lengthening(&polish.rope.curve, 0.);
-        let arc = Change { to: to_nowhere, dz: dz.map(|_| 0.) };
-        Step { straight: Change { to, dz }, arc, slope: 0. }
+    /// A step along `to` instead of Newton's.
+    fn straight(polish: &mut Polish, around: &Surroundings, to: Direction) -> Step {
+        let barrier = polish.barrier();
+        let step = polish.newton.step(&polish.rope, around, &polish.z, barrier).unwrap();
+        let dz = polish.z.map(|_| 0.);
+        Step { straight: Change { to, dz }, slope: 0., ..step }
     }
 
     #[test]
@@ -156,9 +165,9 @@ mod tests {
         let around = Surroundings { terms: polish.rope.terms(&[]), bystanders: vec![] };
         let mut to = Direction::lengthening(&polish.rope.curve, 0.);
         to.beads = polish.rope.curve.vertices().iter().map(|v| -2. * *v).collect();
-        let step = straight(&polish, to, polish.z.map(|_| 0.));
+        let step = straight(&mut polish, &around, to);
         polish.way = f64::MAX;
-        let share = polish.search(&step, false, &around).unwrap().a;
+        let share = polish.search(&step, None, &around).unwrap().a;
         assert!(share < 0.06, "edges of {} of their length are too short", 1. - 2. * share);
         assert!(polish.passages.refused > 0 && polish.take(&step, &around));
         assert_eq!(polish.passages.shown, 1);
@@ -168,10 +177,10 @@ mod tests {
     fn a_multiplier_that_would_reach_0_does_not_hold_up_the_others() {
         let mut polish = circle();
         let around = polish.look_around();
-        let mut dz = polish.z.map(|z| 0.5 * z);
+        let mut dz = polish.z.map(|z| 0.25 * z);
         dz.edges[0] = -1e9;
-        let step = straight(&polish, Direction::lengthening(&polish.rope.curve, 0.), dz);
-        let after = polish.multipliers(&step.to(0.5, true), &step.dz(0.5, true), &around);
+        let nowhere = Direction::lengthening(&polish.rope.curve, 0.);
+        let after = polish.multipliers(&nowhere, &dz, &around);
         for (k, (before, after)) in polish.z.iter().zip(after.iter()).enumerate() {
             let share = if k == 0 { 1. - polish.settings.most_used } else { 1.25 };
             assert!((after - share * before).abs() < 1e-12 * before, "{k}: {before} {after}");

@@ -29,30 +29,32 @@ pub struct Change {
     pub dz: Multipliers,
 }
 
-/// A Newton step, and the arc whose tangent it is.
+/// A Newton step.
 pub struct Step {
     pub straight: Change,
-    /// What is added, times the square of the share that is taken, on the arc.
-    pub arc: Change,
     /// Derivative of the barrier function at the start.
     pub slope: f64,
+    pub matrix: Bordered,
 }
 
 impl Step {
-    /// The way of the share `a` of the step, straight or on the arc.
-    pub fn to(&self, a: f64, on_arc: bool) -> Direction {
+    /// The way of the share `a` of the step, straight or on its `arc`, which adds its square's share.
+    pub fn to(&self, a: f64, arc: Option<&Change>) -> Direction {
         let mut to = self.straight.to.clone();
-        if on_arc {
-            to.add(a, &self.arc.to);
+        if let Some(arc) = arc {
+            to.add(a, &arc.to);
         }
         to.scale(a);
         to
     }
 
     /// The change of the multipliers on it.
-    pub fn dz(&self, a: f64, on_arc: bool) -> Multipliers {
-        let more = if on_arc { a * a } else { 0. };
-        self.straight.dz.map_with(&self.arc.dz, |dz, arc| a * dz + more * arc)
+    pub fn dz(&self, a: f64, arc: Option<&Change>) -> Multipliers {
+        let dz = self.straight.dz.map(|dz| a * dz);
+        match arc {
+            Some(arc) => dz.map_with(&arc.dz, |dz, arc| dz + a * a * arc),
+            None => dz,
+        }
     }
 }
 
@@ -107,22 +109,19 @@ impl Newton {
         let dz = terms
             .map_with(z, |t, z| barrier.force(t) - z - barrier.stiffness(t, *z) * t.course(&to)[0]);
         let slope = -downhill.dot(&to);
-        let straight = Change { to, dz };
-        let arc = self.arc(&bordered, terms, z, barrier, &straight)?;
-        Some(Step { straight, arc, slope })
+        Some(Step { straight: Change { to, dz }, slope, matrix: bordered })
     }
 
-    /// What makes an arc of a step: to third order, all that the perturbed conditions are off by falls to
-    /// 1 - a of it on the share a, but for what is not quadratic in bends. The factor is that of the step.
-    fn arc(
+    /// What makes an arc of the last step: to third order, all that the perturbed conditions are off by falls
+    /// to 1 - a of it on the share a, but for what is not quadratic in bends. The factor is that of the step.
+    pub fn arc(
         &mut self,
-        matrix: &Bordered,
+        step: &Step,
         terms: &Terms,
         z: &Multipliers,
         barrier: Barrier,
-        straight: &Change,
     ) -> Option<Change> {
-        let Change { to: along, dz } = straight;
+        let Change { to: along, dz } = &step.straight;
         let forces = terms.map_with(z, |t, z| barrier.rise(t, *z, t.course(along)));
         let off = terms.map_with(dz, |t, dz| dz * t.course(along)[0] / t.g);
         let off = off.map_with(&forces, |off, rise| off + rise);
@@ -132,7 +131,7 @@ impl Newton {
             t.turn(*dz, along, &mut rest);
             t.push(-off, &mut rest);
         }
-        let to = self.matrix.solve_again(matrix, &rest)?;
+        let to = self.matrix.solve_again(&step.matrix, &rest)?;
         let dz = terms.map_with(z, |t, z| -barrier.stiffness(t, *z) * t.course(&to)[0]);
         Some(Change { to, dz: dz.map_with(&off, |dz, off| dz - off) })
     }
@@ -255,7 +254,7 @@ mod tests {
 
         /// By how much the perturbed conditions are off on the share `a` of a step, against 1 - a of what
         /// they were off by.
-        fn off(&self, step: &Step, a: f64, on_arc: bool) -> f64 {
+        fn off(&self, step: &Step, a: f64, arc: Option<&Change>) -> f64 {
             let pairs: Vec<_> = self.around.terms.contacts.iter().map(Term::pair).collect();
             let off_after = |to: &Direction, z: &Multipliers| {
                 let rope = self.rope.moved(1., to);
@@ -265,9 +264,9 @@ mod tests {
                 let beads = left.beads.iter().flat_map(DVec3::to_array);
                 beads.chain(left.lengths).chain(products.iter().copied()).collect::<Vec<_>>()
             };
-            let z = self.z.map_with(&step.dz(a, on_arc), |z, dz| z + dz);
-            let after = off_after(&step.to(a, on_arc), &z);
-            let before = off_after(&step.to(0., false), &self.z);
+            let z = self.z.map_with(&step.dz(a, arc), |z, dz| z + dz);
+            let after = off_after(&step.to(a, arc), &z);
+            let before = off_after(&step.to(0., None), &self.z);
             let squares = after.iter().zip(before).map(|(f, f_0)| (f - (1. - a) * f_0).powi(2));
             squares.sum::<f64>().sqrt()
         }
@@ -347,7 +346,8 @@ mod tests {
             cases += 1;
             let terms = case.around.terms.iter();
             let share = terms.fold(1f64, |a, t| a.min(longest_step(t, &step.straight.to, 0.5)));
-            let [line, arc] = [false, true].map(|on_arc| case.off(&step, 1e-3 * share, on_arc));
+            let arc = newton.arc(&step, &case.around.terms, &case.z, BARRIER).unwrap();
+            let [line, arc] = [None, Some(&arc)].map(|arc| case.off(&step, 1e-3 * share, arc));
             assert!(arc < 0.2 * line, "{round}: {arc} on the arc, {line} on the line");
         }
         assert!(cases >= 5, "{cases}");
