@@ -49,6 +49,12 @@ def test_what_start_does_not_take(sono: Sono, arguments: list[str], message: str
     assert message in result.stderr
 
 
+def test_a_braid_in_pieces_is_doubted(sono: Sono) -> None:
+    for command in (["tighten", "-n", "60", *QUICK], ["search", "--trials", "1"]):
+        result = sono(*command, "2 2")
+        assert (result.exit_code, result.stderr.count("'2 2' is read as a closed braid, and falls")) == (0, 1)
+
+
 def test_tighten_takes_codes_and_dotted_names_side_by_side(folder: Path, sono: Sono) -> None:
     options = ("--pd", FIGURE_EIGHT, "--dt", "4 6 2", "--dt", "4 x 2", "-n", "60", "-o", "out/", *QUICK)
     result = sono("tighten", "3.1", "5/2", *options)

@@ -3,6 +3,7 @@
 import os
 import re
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Self
@@ -128,10 +129,11 @@ def _drawn(knot: str) -> VertexFile:
         curve = starts.drawn(knot)
     except ValueError as error:
         raise FormatError(f"{knot}: no such file, nor a knot: {error}") from error
-    return as_file(knot, curve, knot)
+    doubt = starts.doubt(knot)
+    return as_file(knot, curve, knot, [doubt] if doubt else [])
 
 
-def as_file(name: str, curve: Components, title: str) -> VertexFile:
+def as_file(name: str, curve: Components, title: str, notes: Sequence[str] = ()) -> VertexFile:
     """Return a curve of no file as one that was read, its title a comment, and its vertices a line each."""
     lines = [np.arange(len(component)) + 1 for component in curve]
-    return VertexFile(name, list(curve), lines, comments=[title])
+    return VertexFile(name, list(curve), lines, notes=notes, comments=[title])
