@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import resources
 from pathlib import Path
@@ -14,6 +15,7 @@ from conftest import Sono
 from numpy.typing import NDArray
 
 import sono as package
+from sono.figures import packing
 from sono.figures.plot.sheet import COLOURS
 from sono.figures.turning import facing, turned
 from sono.figures.view import WEAKEST, curvature, page, titled
@@ -56,6 +58,18 @@ def placed(data: dict[str, Any]) -> NDArray[np.float64]:
     return np.asarray(data["corner"] + data["step"] * steps)
 
 
+def paired(text: str, n: int) -> list[list[int]]:
+    """Return pairs of vertices: a number of base 128 after the other, whose last digits are below 128."""
+    found, key, digits = [], 0, 0
+    for byte in base64.b64decode(text, validate=True):
+        key += byte % 128 * 128**digits
+        digits = digits + 1 if byte >= 128 else 0
+        if not digits:
+            found.append([key // n, key % n])
+    assert not digits
+    return found
+
+
 @pytest.fixture(scope="module")
 def borromean() -> str:
     return page([("rings", package.start("Borromean", known=True))], "Rings")
@@ -85,13 +99,49 @@ def test_the_data_are_the_rope(borromean: str) -> None:
     forces = package.forces(rope)
     strong = forces.pressing > WEAKEST * forces.pressing.max()
     assert 0 < strong.sum() <= len(strong)
-    np.testing.assert_array_equal(decoded(data["pairs"], "<u2").reshape(-1, 2), forces.contacts[strong])
+    assert paired(data["pairs"], len(np.concatenate(rope))) == forces.contacts[strong].tolist()
     assert data["strongest"] == forces.pressing.max()
     pressing = decoded(data["pressing"], "<u2") / 65535 * data["strongest"]
     np.testing.assert_allclose(pressing, forces.pressing[strong], atol=1e-5 * data["strongest"])
     np.testing.assert_allclose(decoded(data["curvature"], "<u2") / 65535, curvature(rope), atol=1e-5)
     assert dict(data["rows"])["L_p"] == f"{package.measure(curve).l_p:.6f}"
     assert data["type"].startswith("L6a4")
+
+
+@pytest.mark.parametrize("n", [2, 3, 127, 130, 1000, 65_536, 100_000, 1_000_000])
+@pytest.mark.parametrize("count", [0, 1, 2, 3000])
+def test_pairs_are_those_that_were_packed(n: int, count: int) -> None:
+    random = np.random.default_rng(n + count)
+    pairs = np.unique(np.sort(random.integers(0, n, (count, 2)), axis=1), axis=0)
+    text = packing.pairs(pairs, n)
+    assert paired(text, n) == pairs.tolist()
+    assert len(text) <= 4 / 3 * 6 * len(pairs) + 4
+    ends = np.array([[0, 0], [0, n - 1], [n - 1, n - 1]])
+    assert paired(packing.pairs(ends, n), n) == ends.tolist()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_contacts_go_with_what_they_bear_in_whatever_order(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rope = package.start("L6a4", known=True)
+    forces = package.forces(rope)
+    order = np.random.default_rng(seed).permutation(len(forces.pressing))
+    turned_over = replace(forces, contacts=forces.contacts[order], pressing=forces.pressing[order])
+    monkeypatch.setattr("sono.figures.view.forces", lambda _: turned_over)
+    (data,) = Tags(page([("rings", rope)], "Rings")).data
+    found = paired(data["pairs"], sum(map(len, rope)))
+    assert found == sorted(found)
+    pressing = decoded(data["pressing"], "<u2") / 65535 * data["strongest"]
+    known = {(i, j): force for (i, j), force in zip(forces.contacts.tolist(), forces.pressing, strict=True)}
+    np.testing.assert_allclose(pressing, [known[i, j] for i, j in found], atol=1e-5 * data["strongest"])
+
+
+def test_a_curve_without_contacts() -> None:
+    angle = np.arange(6) * np.pi / 3
+    hexagon = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    (data,) = Tags(page([("ring", hexagon)], "Ring")).data
+    assert data["pairs"] == data["pressing"] == ""
 
 
 @pytest.mark.parametrize("scale", [1e-6, 0.5, 1e5])

@@ -8,11 +8,20 @@ const RINGS = 1500;
 
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 
-/** Decode base64 of little-endian numbers. */
-const numbers = (text, Kind) => new Kind(bytes(text).buffer);
+/** Decode shares of `most`, two bytes each. */
+const shares = (text, most) => Float32Array.from(new Uint16Array(bytes(text).buffer), (x) => (most * x) / 65535);
 
-/** Decode shares of `most`. */
-const shares = (text, most) => Float32Array.from(numbers(text, Uint16Array), (x) => (most * x) / 65535);
+/** Decode pairs of numbers below n: i n + j rises by numbers of digits of seven bits; all but their last have the eighth. */
+function pairs(text, n) {
+  const found = [];
+  let sum = 0, worth = 1;
+  for (const byte of bytes(text)) {
+    sum += worth * (byte & 127);
+    worth = byte < 128 ? 1 : 128 * worth;
+    if (byte < 128) found.push(Math.floor(sum / n), sum % n);
+  }
+  return Uint32Array.from(found);
+}
 
 /** Decode coordinates: steps from a corner, of three bytes each. */
 function places({ vertices, corner, step }) {
@@ -43,7 +52,7 @@ class Curve {
     this.vertices = places(given);
     this.n = this.vertices.length / 3;
     this.curvature = shares(given.curvature, 1);
-    this.pairs = numbers(given.pairs, this.n > 65536 ? Uint32Array : Uint16Array);
+    this.pairs = pairs(given.pairs, this.n);
     this.pressing = shares(given.pressing, given.strongest);
     this.component = this.sizes.flatMap((size, c) => Array(size).fill(c));
     this.first = this.sizes.map((_, c) => this.sizes.slice(0, c).reduce((a, b) => a + b, 0));
