@@ -12,6 +12,7 @@ import pytest
 from conftest import Sono, Spawn
 from test_report import rows, wait_for
 
+import sono as package
 from sono import starts
 from sono.figures.report import ropes
 from sono.formats import write
@@ -138,7 +139,7 @@ def another_figure(folder: Path) -> None:
 def test_what_has_changed_is_made_anew(
     change: Callable[[Path], None], sono: Sono, folder: Path, written: Written
 ) -> None:
-    write(folder / "mine.txt", starts.start("3_1", known=True))
+    write(folder / "mine.txt", package.start("3_1", known=True))
     command = ("report", "mine.txt", "Hopf", "-o", "site", "--force")
     sono(*command)
     change(folder)

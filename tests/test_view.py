@@ -138,9 +138,9 @@ def test_contacts_go_with_what_they_bear_in_whatever_order(
 
 
 def test_a_curve_without_contacts() -> None:
-    angle = np.arange(6) * np.pi / 3
-    hexagon = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
-    (data,) = Tags(page([("ring", hexagon)], "Ring")).data
+    angle = np.arange(50) * np.pi / 25
+    ellipse = np.column_stack([2 * np.cos(angle), 1.5 * np.sin(angle), 0 * angle])  # which its bends hold
+    (data,) = Tags(page([("ring", ellipse)], "Ring")).data
     assert data["pairs"] == data["pressing"] == ""
 
 
