@@ -182,6 +182,14 @@ def test_a_page_is_small() -> None:
     assert len(rope.view().html.encode()) < 80_000
 
 
+@pytest.mark.slow
+def test_a_page_of_a_fine_rope_is_small(tmp_path: Path) -> None:
+    package.write(tmp_path / "rope.txt", package.tighten("3_1", 2000).curve)
+    html = page([("rope", package.read(tmp_path / "rope.txt"))], "Rope")
+    assert len(Tags(html).data[0]["pressing"]) > 20_000
+    assert len(html.encode()) < 150_000
+
+
 def test_titles() -> None:
     assert titled(["a"]) == "a"
     assert titled(["a", "b", "c"]) == "a and 2 more"
