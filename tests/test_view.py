@@ -2,7 +2,10 @@
 
 import base64
 import json
+import os
 import re
+import signal
+import time
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import resources
@@ -11,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Sono
+from conftest import Sono, Spawn
 from numpy.typing import NDArray
 
 import sono as package
@@ -247,6 +250,33 @@ def test_the_command_takes_names_and_several(sono: Sono, folder: Path) -> None:
     assert [data["name"] for data in Tags(done.stdout).data] == ["4_1", "3_1", "Hopf"]
     assert done.stderr == ""
     assert not list(folder.glob("*.html"))
+
+
+def test_what_takes_long_is_told(sono: Sono, monkeypatch: pytest.MonkeyPatch) -> None:
+    def slow(*given: Any) -> str:
+        time.sleep(0.5)
+        return page(*given)
+
+    monkeypatch.setattr("sono.cli.each.LONG", 0)
+    monkeypatch.setattr("sono.figures.view.page", slow)
+    said = sono("view", "3_1", "Hopf", "-o", "page.html").stderr
+    count = sum(len(part) for name in ("3_1", "Hopf") for part in package.start(name, known=True))
+    assert said.splitlines()[0] == f"sono: page.html: the forces in ropes of {count} vertices take a while"
+    assert said.count("\n") == 2
+    assert sono("view", "3_1", "-o", "page.html", "--force", "-q").stderr == ""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
+def test_ctrl_c_does_not_wait_for_what_takes_long(spawn: Spawn, folder: Path) -> None:
+    process = spawn("view", "T(30,60)", "-o", "page.html")
+    assert process.stderr
+    assert "take a while" in process.stderr.readline()
+    begun = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert process.wait() == 130
+    assert time.monotonic() < begun + 10  # five times what it takes where nothing else runs
+    assert not (folder / "page.html").exists()
 
 
 def test_a_wrong_file_spoils_only_itself(sono: Sono, folder: Path) -> None:
