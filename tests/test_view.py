@@ -9,6 +9,7 @@ import time
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import resources
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -54,23 +55,30 @@ def decoded(text: str, kind: str) -> NDArray[Any]:
     return np.frombuffer(base64.b64decode(text, validate=True), kind)
 
 
+def wholes(text: str) -> list[int]:
+    """Return numbers of base 128, one after the other, whose last digits are below 128."""
+    found, number, place = [], 0, 0
+    for byte in base64.b64decode(text, validate=True):
+        number += byte % 128 * 128**place
+        place += 1
+        if byte < 128:
+            found.append(number)
+            number = place = 0
+    assert not place
+    return found
+
+
 def placed(data: dict[str, Any]) -> NDArray[np.float64]:
-    """Return the vertices (n, 3) of a rope, steps from a corner."""
-    low, middle, high = decoded(data["vertices"], "u1").astype(int).reshape(-1, 3).T
-    steps = (low + 256 * middle + 65536 * high).reshape(-1, 3)
+    """Return the vertices (n, 3) of a rope: steps from a corner, by their third differences."""
+    folded = np.array(wholes(data["vertices"])).reshape(-1, 3)
+    third = np.where(folded % 2, -(folded + 1) // 2, folded // 2)
+    steps = third.cumsum(axis=0).cumsum(axis=0).cumsum(axis=0)
     return np.asarray(data["corner"] + data["step"] * steps)
 
 
 def paired(text: str, n: int) -> list[list[int]]:
-    """Return pairs of vertices: a number of base 128 after the other, whose last digits are below 128."""
-    found, key, digits = [], 0, 0
-    for byte in base64.b64decode(text, validate=True):
-        key += byte % 128 * 128**digits
-        digits = digits + 1 if byte >= 128 else 0
-        if not digits:
-            found.append([key // n, key % n])
-    assert not digits
-    return found
+    """Return pairs of vertices, by differences."""
+    return [[key // n, key % n] for key in accumulate(wholes(text))]
 
 
 @pytest.fixture(scope="module")
@@ -121,6 +129,20 @@ def test_pairs_are_those_that_were_packed(n: int, count: int) -> None:
     assert len(text) <= 4 / 3 * 6 * len(pairs) + 4
     ends = np.array([[0, 0], [0, n - 1], [n - 1, n - 1]])
     assert paired(packing.pairs(ends, n), n) == ends.tolist()
+
+
+@pytest.mark.parametrize("size", [1e-9, 1, 1e6])
+@pytest.mark.parametrize("n", [3, 4, 50, 3000])
+def test_vertices_are_where_they_were(n: int, size: float) -> None:
+    points = size * np.random.default_rng(n).normal(size=(n, 3))
+    found = placed(packing.vertices(points))
+    np.testing.assert_allclose(found, points, atol=np.ptp(points, axis=0).max() / 2**24)
+
+
+def test_vertices_of_a_smooth_curve_take_little() -> None:
+    angle = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
+    circle = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    assert len(packing.vertices(circle)["vertices"]) < 4 / 3 * 3.1 * 2000
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -261,7 +283,7 @@ def test_what_takes_long_is_told(sono: Sono, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr("sono.figures.view.page", slow)
     said = sono("view", "3_1", "Hopf", "-o", "page.html").stderr
     count = sum(len(part) for name in ("3_1", "Hopf") for part in package.start(name, known=True))
-    assert said.splitlines()[0] == f"sono: page.html: the forces in ropes of {count} vertices take a while"
+    assert said.splitlines()[0] == f"sono: the forces in ropes of {count} vertices take a while"
     assert said.count("\n") == 2
     assert sono("view", "3_1", "-o", "page.html", "--force", "-q").stderr == ""
 

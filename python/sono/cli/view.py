@@ -75,7 +75,7 @@ def _written(output: str, curves: "Sequence[tuple[str, Components]]", quiet: boo
     from sono.figures.view import page, titled
 
     count = sum(len(component) for _, components in curves for component in components)
-    what = "" if quiet else f"{output}: the forces in ropes of {count:,} vertices take a while"
+    what = "" if quiet else f"the forces in ropes of {count:,} vertices take a while"
     html = waited(lambda: page(curves, titled([name for name, _ in curves])), what)
     try:
         formats.save(output, html)

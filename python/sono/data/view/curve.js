@@ -11,22 +11,31 @@ const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 /** Decode shares of `most`, two bytes each. */
 const shares = (text, most) => Float32Array.from(new Uint16Array(bytes(text).buffer), (x) => (most * x) / 65535);
 
-/** Decode pairs of numbers below n: i n + j rises by numbers of digits of seven bits; all but their last have the eighth. */
-function pairs(text, n) {
+/** Decode whole numbers of digits of seven bits, the lowest first; all but the last have the eighth. */
+function wholes(text) {
   const found = [];
   let sum = 0, worth = 1;
   for (const byte of bytes(text)) {
     sum += worth * (byte & 127);
-    worth = byte < 128 ? 1 : 128 * worth;
-    if (byte < 128) found.push(Math.floor(sum / n), sum % n);
+    worth *= 128;
+    if (byte > 127) continue;
+    found.push(sum);
+    [sum, worth] = [0, 1];
   }
-  return Uint32Array.from(found);
+  return found;
 }
 
-/** Decode coordinates: steps from a corner, of three bytes each. */
+/** Decode pairs of numbers below n: i n + j, as differences. */
+function pairs(text, n) {
+  let sum = 0;
+  return Uint32Array.from(wholes(text).flatMap((step) => [Math.floor((sum += step) / n), sum % n]));
+}
+
+/** Decode coordinates: steps from a corner, as differences of differences of differences, with those below 0 folded in. */
 function places({ vertices, corner, step }) {
-  const b = bytes(vertices);
-  return Float32Array.from({ length: b.length / 3 }, (_, k) => corner[k % 3] + step * (b[3 * k] + 256 * b[3 * k + 1] + 65536 * b[3 * k + 2]));
+  const found = wholes(vertices).map((x) => (x % 2 ? -(x + 1) / 2 : x / 2));
+  for (let times = 0; times < 3; times++) for (let k = 3; k < found.length; k++) found[k] += found[k - 3];
+  return Float32Array.from(found, (x, k) => corner[k % 3] + step * x);
 }
 
 const add = (a, b, t = 1) => [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
