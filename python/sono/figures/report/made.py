@@ -25,11 +25,6 @@ class Made:
     crc: int
     rope: Rope
 
-    @property
-    def line(self) -> str:
-        """Itself, as JSON."""
-        return json.dumps(asdict(self))
-
 
 def earlier(site: Path) -> dict[str, Made]:
     """Return what was made in a folder, by the places of ropes; damaged lines are left out."""
@@ -47,15 +42,17 @@ def checksum(site: Path, rope: Rope) -> int:
     """Return what tells a rope and its files from others."""
     crc = zlib.crc32(json.dumps(asdict(rope)).encode())
     for suffix in SUFFIXES:
-        path = Path(f"{site.joinpath(*rope.at.split('/'))}{suffix}")
-        crc = zlib.crc32(path.read_bytes() if path.is_file() else b"none", crc)
+        data = b"none"
+        with suppress(OSError):
+            data = Path(f"{site.joinpath(*rope.at.split('/'))}{suffix}").read_bytes()
+        crc = zlib.crc32(data, crc)
     return crc
 
 
 def keep(site: Path, key: str, rope: Rope) -> Made:
     """Write down that a rope is made, in one go, as other processes do. Raises `FormatError`."""
     made = Made(key, checksum(site, rope), rope)
-    line = f"\n{made.line}".encode()  # first the end of a line that may have been cut off
+    line = f"\n{json.dumps(asdict(made))}".encode()  # first the end of a line that may have been cut off
     try:
         with open(site / NAME, "ab", buffering=len(line) + 1) as file:
             file.write(line)
@@ -66,4 +63,4 @@ def keep(site: Path, key: str, rope: Rope) -> Made:
 
 def keep_only(site: Path, made: Iterable[Made]) -> None:
     """Write down what is made in this order, and nothing else. Raises `FormatError`."""
-    formats.save(str(site / NAME), "".join(f"{one.line}\n" for one in made))
+    formats.save(str(site / NAME), "".join(f"{json.dumps(asdict(one))}\n" for one in made))
