@@ -1,6 +1,6 @@
 """The tables and figures of the paper, made from nothing, and beside what it prints.
 
-    python examples/paper.py made/       # two minutes of a core; needs pip install 'sono[plot]'
+    python examples/paper.py made/       # a minute of a core; needs pip install 'sono[plot]'
 
 The paper is J. Baranska, P. Pieranski, E. J. Rawdon, "Ropelength of tight polygonal knots". The folder gets
 tables.md and a picture for each of its figures that shows a tight rope, lengths of ropes, or the model.

@@ -2,18 +2,24 @@
 
 import base64
 import json
+import os
 import re
+import signal
+import time
+from dataclasses import replace
 from html.parser import HTMLParser
 from importlib import resources
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Sono
+from conftest import Sono, Spawn
 from numpy.typing import NDArray
 
 import sono as package
+from sono.figures import packing
 from sono.figures.plot.sheet import COLOURS
 from sono.figures.turning import facing, turned
 from sono.figures.view import WEAKEST, curvature, page, titled
@@ -49,11 +55,30 @@ def decoded(text: str, kind: str) -> NDArray[Any]:
     return np.frombuffer(base64.b64decode(text, validate=True), kind)
 
 
+def wholes(text: str) -> list[int]:
+    """Return numbers of base 128, one after the other, whose last digits are below 128."""
+    found, number, place = [], 0, 0
+    for byte in base64.b64decode(text, validate=True):
+        number += byte % 128 * 128**place
+        place += 1
+        if byte < 128:
+            found.append(number)
+            number = place = 0
+    assert not place
+    return found
+
+
 def placed(data: dict[str, Any]) -> NDArray[np.float64]:
-    """Return the vertices (n, 3) of a rope, steps from a corner."""
-    low, middle, high = decoded(data["vertices"], "u1").astype(int).reshape(-1, 3).T
-    steps = (low + 256 * middle + 65536 * high).reshape(-1, 3)
+    """Return the vertices (n, 3) of a rope: steps from a corner, by their third differences."""
+    folded = np.array(wholes(data["vertices"])).reshape(-1, 3)
+    third = np.where(folded % 2, -(folded + 1) // 2, folded // 2)
+    steps = third.cumsum(axis=0).cumsum(axis=0).cumsum(axis=0)
     return np.asarray(data["corner"] + data["step"] * steps)
+
+
+def paired(text: str, n: int) -> list[list[int]]:
+    """Return pairs of vertices, by differences."""
+    return [[key // n, key % n] for key in accumulate(wholes(text))]
 
 
 @pytest.fixture(scope="module")
@@ -85,13 +110,63 @@ def test_the_data_are_the_rope(borromean: str) -> None:
     forces = package.forces(rope)
     strong = forces.pressing > WEAKEST * forces.pressing.max()
     assert 0 < strong.sum() <= len(strong)
-    np.testing.assert_array_equal(decoded(data["pairs"], "<u2").reshape(-1, 2), forces.contacts[strong])
+    assert paired(data["pairs"], len(np.concatenate(rope))) == forces.contacts[strong].tolist()
     assert data["strongest"] == forces.pressing.max()
     pressing = decoded(data["pressing"], "<u2") / 65535 * data["strongest"]
     np.testing.assert_allclose(pressing, forces.pressing[strong], atol=1e-5 * data["strongest"])
     np.testing.assert_allclose(decoded(data["curvature"], "<u2") / 65535, curvature(rope), atol=1e-5)
     assert dict(data["rows"])["L_p"] == f"{package.measure(curve).l_p:.6f}"
     assert data["type"].startswith("L6a4")
+
+
+@pytest.mark.parametrize("n", [2, 3, 127, 130, 1000, 65_536, 100_000, 1_000_000])
+@pytest.mark.parametrize("count", [0, 1, 2, 3000])
+def test_pairs_are_those_that_were_packed(n: int, count: int) -> None:
+    random = np.random.default_rng(n + count)
+    pairs = np.unique(np.sort(random.integers(0, n, (count, 2)), axis=1), axis=0)
+    text = packing.pairs(pairs, n)
+    assert paired(text, n) == pairs.tolist()
+    assert len(text) <= 4 / 3 * 6 * len(pairs) + 4
+    ends = np.array([[0, 0], [0, n - 1], [n - 1, n - 1]])
+    assert paired(packing.pairs(ends, n), n) == ends.tolist()
+
+
+@pytest.mark.parametrize("size", [1e-9, 1, 1e6])
+@pytest.mark.parametrize("n", [3, 4, 50, 3000])
+def test_vertices_are_where_they_were(n: int, size: float) -> None:
+    points = size * np.random.default_rng(n).normal(size=(n, 3))
+    found = placed(packing.vertices(points))
+    np.testing.assert_allclose(found, points, atol=np.ptp(points, axis=0).max() / 2**24)
+
+
+def test_vertices_of_a_smooth_curve_take_little() -> None:
+    angle = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
+    circle = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    assert len(packing.vertices(circle)["vertices"]) < 4 / 3 * 3.1 * 2000
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_contacts_go_with_what_they_bear_in_whatever_order(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rope = package.start("L6a4", known=True)
+    forces = package.forces(rope)
+    order = np.random.default_rng(seed).permutation(len(forces.pressing))
+    turned_over = replace(forces, contacts=forces.contacts[order], pressing=forces.pressing[order])
+    monkeypatch.setattr("sono.figures.view.forces", lambda _: turned_over)
+    (data,) = Tags(page([("rings", rope)], "Rings")).data
+    found = paired(data["pairs"], sum(map(len, rope)))
+    assert found == sorted(found)
+    pressing = decoded(data["pressing"], "<u2") / 65535 * data["strongest"]
+    known = {(i, j): force for (i, j), force in zip(forces.contacts.tolist(), forces.pressing, strict=True)}
+    np.testing.assert_allclose(pressing, [known[i, j] for i, j in found], atol=1e-5 * data["strongest"])
+
+
+def test_a_curve_without_contacts() -> None:
+    angle = np.arange(50) * np.pi / 25
+    ellipse = np.column_stack([2 * np.cos(angle), 1.5 * np.sin(angle), 0 * angle])  # which its bends hold
+    (data,) = Tags(page([("ring", ellipse)], "Ring")).data
+    assert data["pairs"] == data["pressing"] == ""
 
 
 @pytest.mark.parametrize("scale", [1e-6, 0.5, 1e5])
@@ -130,6 +205,14 @@ def test_any_name_can_be_written(name: str, tmp_path: Path) -> None:
 def test_a_page_is_small() -> None:
     rope = package.tighten("3_1", 500)
     assert len(rope.view().html.encode()) < 80_000
+
+
+@pytest.mark.slow
+def test_a_page_of_a_fine_rope_is_small(tmp_path: Path) -> None:
+    package.write(tmp_path / "rope.txt", package.tighten("3_1", 2000).curve)
+    html = page([("rope", package.read(tmp_path / "rope.txt"))], "Rope")
+    assert len(Tags(html).data[0]["pressing"]) > 20_000
+    assert len(html.encode()) < 150_000
 
 
 def test_titles() -> None:
@@ -189,6 +272,33 @@ def test_the_command_takes_names_and_several(sono: Sono, folder: Path) -> None:
     assert [data["name"] for data in Tags(done.stdout).data] == ["4_1", "3_1", "Hopf"]
     assert done.stderr == ""
     assert not list(folder.glob("*.html"))
+
+
+def test_what_takes_long_is_told(sono: Sono, monkeypatch: pytest.MonkeyPatch) -> None:
+    def slow(*given: Any) -> str:
+        time.sleep(0.5)
+        return page(*given)
+
+    monkeypatch.setattr("sono.cli.each.LONG", 0)
+    monkeypatch.setattr("sono.figures.view.page", slow)
+    said = sono("view", "3_1", "Hopf", "-o", "page.html").stderr
+    count = sum(len(part) for name in ("3_1", "Hopf") for part in package.start(name, known=True))
+    assert said.splitlines()[0] == f"sono: the forces in ropes of {count} vertices take a while"
+    assert said.count("\n") == 2
+    assert sono("view", "3_1", "-o", "page.html", "--force", "-q").stderr == ""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
+def test_ctrl_c_does_not_wait_for_what_takes_long(spawn: Spawn, folder: Path) -> None:
+    process = spawn("view", "T(30,60)", "-o", "page.html")
+    assert process.stderr
+    assert "take a while" in process.stderr.readline()
+    begun = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert process.wait() == 130
+    assert time.monotonic() < begun + 10  # five times what it takes where nothing else runs
+    assert not (folder / "page.html").exists()
 
 
 def test_a_wrong_file_spoils_only_itself(sono: Sono, folder: Path) -> None:

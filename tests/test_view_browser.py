@@ -3,6 +3,7 @@
 import io
 import shutil
 from collections.abc import Callable, Iterator
+from importlib import resources
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import sono
+from sono.figures import packing
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright")
 
@@ -246,6 +248,31 @@ def test_pointing_at_the_map_marks_the_rope(opened: Open) -> None:
     seen.page.locator("#map").focus()
     seen.press("ArrowRight")
     assert seen.text("#told tbody").split("\t")[0].endswith(f"0:{i + 1}")
+
+
+@pytest.mark.parametrize(("n", "count"), [(5, 0), (5, 1), (300, 2000), (66_000, 2000)])
+def test_the_script_reads_what_was_packed(tab: Any, n: int, count: int) -> None:
+    random = np.random.default_rng(n + count)
+    vertices, curvature = random.normal(size=(n, 3)), random.random(n)
+    pairs = np.unique(np.sort(random.integers(0, n, (count, 2)), axis=1), axis=0)
+    pressing = random.random(len(pairs))
+    data = {
+        **packing.vertices(vertices),
+        "sizes": [3, n - 3],
+        "curvature": packing.shares(curvature, 1),
+        "pairs": packing.pairs(pairs, n),
+        "strongest": 2,
+        "pressing": packing.shares(pressing, 2),
+    }
+    script = resources.files("sono").joinpath("data", "view", "curve.js").read_text()
+    curve = tab.evaluate(
+        f"""(data) => {{ {script}
+        const curve = new Curve(data);
+        return ["vertices", "curvature", "pairs", "pressing"].map((key) => Array.from(curve[key])); }}""",
+        data,
+    )
+    for found, given in zip(curve, (vertices, curvature, pairs, pressing), strict=True):
+        np.testing.assert_allclose(found, given.ravel(), atol=1e-4)
 
 
 def test_the_slider_goes_through_the_curves(opened: Open) -> None:

@@ -1,9 +1,11 @@
 """What commands share that do something with each curve of files, one after the other."""
 
+import math
 import re
 import shlex
+import time
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from sono.cli.streams import complain
 
@@ -11,6 +13,10 @@ if TYPE_CHECKING:
     from sono.formats import Ends, VertexFile
     from sono.jobs.sources import Source
 
+Result = TypeVar("Result")
+
+LONG = 3
+"""Seconds of waiting after which is told for what."""
 
 _NUMBER = re.compile(r"\d+(\.\d+)?")
 """What differs in messages that say the same of several curves."""
@@ -68,6 +74,21 @@ def _counted(said: Sequence[str], curves: int) -> str:
         return said[0]
     many = f"all {curves}" if len(said) == curves else f"{len(said)} of {curves}"
     return f"{said[0]} (in {many} curves of the file)"
+
+
+def waited(call: Callable[[], Result], what: str) -> Result:
+    """Return what a call returns, for which Ctrl-C does not wait; if it takes long, tell `what` does so."""
+    from sono.patience import patiently
+
+    until = time.monotonic() + LONG
+
+    def look() -> None:
+        nonlocal until
+        if what and time.monotonic() > until:
+            until = math.inf
+            complain(what)
+
+    return patiently(call, look)
 
 
 def knot_of(source: "Source") -> str | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from sono.cli import options
-from sono.cli.each import each, rope_of
+from sono.cli.each import each, rope_of, waited
 
 if TYPE_CHECKING:
     from sono.curve import Components
@@ -73,9 +73,10 @@ def _written(output: str, curves: "Sequence[tuple[str, Components]]", quiet: boo
     """Write the page; return the exit code."""
     from sono import formats
     from sono.figures.view import page, titled
-    from sono.patience import patiently
 
-    html = patiently(lambda: page(curves, titled([name for name, _ in curves])))
+    count = sum(len(component) for _, components in curves for component in components)
+    what = "" if quiet else f"the forces in ropes of {count:,} vertices take a while"
+    html = waited(lambda: page(curves, titled([name for name, _ in curves])), what)
     try:
         formats.save(output, html)
     except formats.FormatError as error:

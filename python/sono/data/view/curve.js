@@ -8,16 +8,34 @@ const RINGS = 1500;
 
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 
-/** Decode base64 of little-endian numbers. */
-const numbers = (text, Kind) => new Kind(bytes(text).buffer);
+/** Decode shares of `most`, two bytes each. */
+const shares = (text, most) => Float32Array.from(new Uint16Array(bytes(text).buffer), (x) => (most * x) / 65535);
 
-/** Decode shares of `most`. */
-const shares = (text, most) => Float32Array.from(numbers(text, Uint16Array), (x) => (most * x) / 65535);
+/** Decode whole numbers of digits of seven bits, the lowest first; all but the last have the eighth. */
+function wholes(text) {
+  const found = [];
+  let sum = 0, worth = 1;
+  for (const byte of bytes(text)) {
+    sum += worth * (byte & 127);
+    worth *= 128;
+    if (byte > 127) continue;
+    found.push(sum);
+    [sum, worth] = [0, 1];
+  }
+  return found;
+}
 
-/** Decode coordinates: steps from a corner, of three bytes each. */
+/** Decode pairs of numbers below n: i n + j, as differences. */
+function pairs(text, n) {
+  let sum = 0;
+  return Uint32Array.from(wholes(text).flatMap((step) => [Math.floor((sum += step) / n), sum % n]));
+}
+
+/** Decode coordinates: steps from a corner, as differences of differences of differences, with those below 0 folded in. */
 function places({ vertices, corner, step }) {
-  const b = bytes(vertices);
-  return Float32Array.from({ length: b.length / 3 }, (_, k) => corner[k % 3] + step * (b[3 * k] + 256 * b[3 * k + 1] + 65536 * b[3 * k + 2]));
+  const found = wholes(vertices).map((x) => (x % 2 ? -(x + 1) / 2 : x / 2));
+  for (let times = 0; times < 3; times++) for (let k = 3; k < found.length; k++) found[k] += found[k - 3];
+  return Float32Array.from(found, (x, k) => corner[k % 3] + step * x);
 }
 
 const add = (a, b, t = 1) => [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
@@ -43,7 +61,7 @@ class Curve {
     this.vertices = places(given);
     this.n = this.vertices.length / 3;
     this.curvature = shares(given.curvature, 1);
-    this.pairs = numbers(given.pairs, this.n > 65536 ? Uint32Array : Uint16Array);
+    this.pairs = pairs(given.pairs, this.n);
     this.pressing = shares(given.pressing, given.strongest);
     this.component = this.sizes.flatMap((size, c) => Array(size).fill(c));
     this.first = this.sizes.map((_, c) => this.sizes.slice(0, c).reduce((a, b) => a + b, 0));

@@ -6,6 +6,7 @@ their part along the axis. Nothing else is needed for strands to hide each other
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +43,7 @@ OUTLINE = 0.4
 """By so many radii a strand rises above what is behind it where its outline is drawn."""
 
 FINER = 2
-"""Pixels are first drawn so many times finer, each way, and then averaged."""
+"""Points to a pixel, each way. Where all of them see one ball, one is lit for all."""
 
 
 @dataclass(frozen=True)
@@ -73,13 +74,13 @@ class Surface:
 
     corner: Floats
     step: float
-    height: Floats
-    ball: NDArray[np.int64]
+    height: NDArray[np.float32]
+    ball: NDArray[np.int32]
 
     @classmethod
     def of(cls, balls: Balls, corner: Floats, step: float, shape: tuple[int, int]) -> "Surface":
         """Look at balls at `shape` points, `step` apart from a lower left `corner` on."""
-        seen = cls(corner, step, np.full(shape, -np.inf), np.zeros(shape, np.int64))
+        seen = cls(corner, step, np.full(shape, -np.inf, np.float32), np.zeros(shape, np.int32))
         for k, centre in enumerate(balls.centres):
             seen._put(k, centre, balls.radius)
         return seen
@@ -88,22 +89,21 @@ class Surface:
         """Put one more ball among the others."""
         low = np.ceil((centre[:2] - radius - self.corner) / self.step).astype(int).clip(0)
         high = np.floor((centre[:2] + radius - self.corner) / self.step).astype(int) + 1
-        x, y = (
-            self.corner[i] + self.step * np.arange(low[i], min(high[i], self.height.shape[1 - i])) - centre[i]
-            for i in (0, 1)
-        )
+        high = np.minimum(high, self.height.shape[::-1])
+        near = (self.corner[i] + self.step * np.arange(low[i], high[i]) - centre[i] for i in (0, 1))
+        x, y = (apart.astype(np.float32) for apart in near)
         place = slice(low[1], low[1] + len(y)), slice(low[0], low[0] + len(x))
         with np.errstate(invalid="ignore"):  # beside the ball
-            height = np.sqrt((radius**2 - y**2)[:, None] - x**2) + centre[2]
+            height = np.sqrt((radius**2 - y**2)[:, None] - x**2) + float(centre[2])
             above = height > self.height[place]
         np.copyto(self.height[place], height, where=above)
         np.copyto(self.ball[place], k, where=above)
 
-    def points(self) -> Floats:
-        """Return the points (h, w, 3) that are seen."""
-        rows, columns = np.indices(self.height.shape)
+    def points(self, which: NDArray[np.bool_]) -> Floats:
+        """Return those points (m, 3) that are seen in some places (h, w)."""
+        rows, columns = np.nonzero(which)
         flat = (self.corner[0] + self.step * columns, self.corner[1] + self.step * rows)
-        return np.stack([*flat, self.height], axis=-1)
+        return np.column_stack([*flat, self.height[which]])
 
     def edges(self, drop: float) -> NDArray[np.bool_]:
         """Tell the points (h, w) beside which the height falls by more than this."""
@@ -121,21 +121,34 @@ def picture(balls: Balls, corner: Floats, step: float, shape: tuple[int, int]) -
     Its pixels are `step` apart, from a lower left `corner` on.
     """
     seen = Surface.of(balls, corner, step / FINER, (FINER * shape[0], FINER * shape[1]))
-    there = seen.height > -np.inf
-    points, owner = seen.points()[there], seen.ball[there]
+    there, edges = seen.height > -np.inf, seen.edges(OUTLINE * balls.radius)
+    lit = there & _needed(seen.ball, there & ~edges)
+    colours = np.zeros((*there.shape, 3), np.float32)
+    colours[lit] = _lit(balls, seen.points(lit), seen.ball[lit], step)
+    colours[edges] *= 0.2
+    return _averaged(colours, lit, there)
+
+
+def _needed(ball: NDArray[np.int32], plain: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tell which points (h, w) are to be lit: the first of a pixel if all of it is plain and of one ball."""
+    one = _of_pixels(plain).all(axis=0) & (np.ptp(_of_pixels(ball), axis=0) == 0)
+    needed = np.repeat(np.repeat(~one, FINER, axis=0), FINER, axis=1)
+    needed[::FINER, ::FINER] = True
+    return needed
+
+
+def _lit(balls: Balls, points: Floats, owner: NDArray[np.int32], step: float) -> Floats:
+    """Return the colours (m, 3) of points of balls."""
     normals = _normals(balls, points, owner)
     lit = 1 - SHADE * _shadow(balls, points + SOFT * balls.radius * normals, step)
     direct = lit * ((normals @ LIGHT + WRAPPED) / (1 + WRAPPED)).clip(0)
     half = LIGHT + np.array([0, 0, 1])
     shine = SHINE * lit * (normals @ (half / np.linalg.norm(half))).clip(0) ** 40
-    fine = np.zeros((*there.shape, 4))
-    fine[there, :3] = balls.colours[owner] * (AMBIENT + DIFFUSE * direct)[:, None] + shine[:, None]
-    fine[there, 3] = 1
-    fine[there & seen.edges(OUTLINE * balls.radius), :3] *= 0.2
-    return _averaged(fine.clip(0, 1))
+    colours: Floats = balls.colours[owner] * (AMBIENT + DIFFUSE * direct)[:, None] + shine[:, None]
+    return colours.clip(0, 1)
 
 
-def _normals(balls: Balls, points: Floats, owner: NDArray[np.int64]) -> Floats:
+def _normals(balls: Balls, points: Floats, owner: NDArray[np.int32]) -> Floats:
     """Return the unit normals (m, 3) of what is seen at points."""
     arms, axes = points - balls.centres[owner], balls.axes[owner]
     arms -= (arms * axes).sum(axis=1)[:, None] * axes
@@ -159,9 +172,13 @@ def _shadow(balls: Balls, points: Floats, step: float) -> Floats:
     return shadow / len(_AROUND)
 
 
-def _averaged(fine: Floats) -> Floats:
-    """Average the pixels (h, w, 4) of a finer picture, by their opacity."""
-    fine[..., :3] *= fine[..., 3:]
-    pixels: Floats = fine.reshape(fine.shape[0] // FINER, FINER, -1, FINER, 4).mean(axis=(1, 3))
-    pixels[..., :3] /= np.where(pixels[..., 3:] > 0, pixels[..., 3:], 1)
-    return pixels
+def _averaged(colours: NDArray[np.float32], lit: NDArray[np.bool_], there: NDArray[np.bool_]) -> Floats:
+    """Return pixels (h, w, 4): the mean colour of the points that are lit, and how many there are of all."""
+    weights = _of_pixels(lit).sum(axis=0)[..., None]
+    pixels = _of_pixels(colours).sum(axis=0) / np.where(weights, weights, 1)
+    return np.concatenate([pixels, _of_pixels(there).mean(axis=0)[..., None]], axis=-1)
+
+
+def _of_pixels(values: NDArray[Any]) -> NDArray[Any]:
+    """Return the values (FINER^2, h, w, ...) of the points of each pixel."""
+    return np.stack([values[i::FINER, j::FINER] for i in range(FINER) for j in range(FINER)])

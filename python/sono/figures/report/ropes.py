@@ -1,7 +1,6 @@
 """One rope of a report: its row, and what stands beside it, all from its vertices as they are written."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +20,9 @@ from sono.tables import Row, published
 
 OTHERS = "others"
 """The family of what has the name of no knot."""
+
+SUFFIXES = (".txt", ".certificate.json", ".js")
+"""Of a rope's files but its page: vertices, the certificate if it has one, and what its page shows."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,11 @@ def family(name: str) -> str:
     return place(name).family if starts.knows(name) else OTHERS
 
 
-def written(folder: Path, at: str, name: str, file: VertexFile, atlas: Mapping[str, Row]) -> Rope:
+def written(folder: Path, at: str, name: str, file: VertexFile, atlas: Row) -> Rope:
     """Write the files of a rope, called so in the report's folder; return what its pages say of it.
 
-    These are the vertices (.txt), the certificate (.certificate.json) if it has one, and what its page shows
-    (.js). A finer L_c, which the vertices do not tell, is that of the rope's row in the `atlas`. Raises
-    `CurveError` for a curve that is not embedded, `FormatError` where a file cannot be written.
+    They have SUFFIXES. A finer L_c, which the vertices do not tell, is that of the rope's row in the `atlas`.
+    Raises `CurveError` for a curve that is not embedded, `FormatError` where a file cannot be written.
     """
     base = folder.joinpath(*at.split("/"))
     make_folder(base.parent)
