@@ -148,7 +148,7 @@ def test_what_is_too_entangled() -> None:
     assert found.crossings > 40
     assert (found.known, found.homfly, found.alexander) == ("undecided", None, None)
     with pytest.raises(sono.TooEntangledError):
-        identify([polygon(1, 200)])
+        identify([polygon(1, 140)])
 
 
 @pytest.mark.parametrize("name", ["3_1", "m4_1", "Hopf", "T(2,4)"])
