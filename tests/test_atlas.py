@@ -53,7 +53,7 @@ def test_all_knots_to_ten_crossings_are_there_and_as_short_as_published() -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("knot", ["3_1", "5_2", "8_19"])
+@pytest.mark.parametrize("knot", ["3_1", "8_19"])
 def test_the_finer_bound_is_what_the_rope_leads_to(knot: str) -> None:
     fine = sono_tighten(SHIPPED.rope(knot), int(ROWS[knot]["n_fine"] or 0), method="polish")
     # Beads may lie in another groove on another machine.
@@ -91,13 +91,9 @@ def test_ropes_are_brought_to_one_edge_length(tmp_path: Path) -> None:
 
 def test_families_have_files_of_their_own(tmp_path: Path) -> None:
     atlas = Atlas(tmp_path)
-    for name, family, n in (
-        ("Hopf", "links", 126),
-        ("T(-3,2)", "torus", 164),
-        ("3_1#m3_1", "composites", 280),
-    ):
+    for name, family in (("Hopf", "links"), ("T(-3,2)", "torus"), ("3_1#m3_1", "composites")):
         knot = shapes.place(name).knot
-        formats.write(tmp_path / "rope.txt", sono_tighten(knot, n, trials=1).curve)
+        formats.write(tmp_path / "rope.txt", SHIPPED.rope(knot))
         row = atlas.take(knot, str(tmp_path / "rope.txt"))
         assert (row["knot"], row["type"]) == (knot, "proven")
         again = Atlas(tmp_path)

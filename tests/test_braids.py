@@ -203,9 +203,8 @@ def test_braids_of_diagrams() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["T(2,15)", "mT(2,10)", "T(3,7)", "T(4,5)", "T(4,6)", "mT(5,6)"])
 def test_scrambled_ones_are_named(name: str) -> None:
-    for seed in range(2):
-        found = identify(scramble(start(name), seed, swirls=8))
-        assert (found.name, found.proven) == (name, True)
+    found = identify(scramble(start(name), 0, swirls=8))
+    assert (found.name, found.proven) == (name, True)
     assert verify(scramble(start(name), 3), mirror(start(name))).verdict == "mirror images"
 
 

@@ -81,7 +81,7 @@ def test_standard_input(folder: Path, sono: Sono) -> None:
 def test_wrong_files_do_not_stop_the_others(folder: Path, sono: Sono) -> None:
     (folder / "crossing.txt").write_text("# 8\n0 0 0\n2 2 0\n2 0 0\n0 2 0\n")
     (folder / "text.txt").write_text("0 0 0\n1 0 nought\n")
-    formats.write(folder / "tangle.txt", [np.random.default_rng(1).normal(size=(200, 3))])
+    formats.write(folder / "tangle.txt", [np.random.default_rng(1).normal(size=(140, 3))])
     result = sono("identify", "crossing.txt", "text.txt", "missing.txt", "8_18", "tangle.txt", "3_1.txt")
     assert result.exit_code == 1
     assert [line.split("\t")[0] for line in result.stdout.splitlines()] == ["file", "3_1.txt"]

@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -464,6 +465,7 @@ def test_a_signal_while_waiting_for_input(spawn: Spawn, folder: Path) -> None:
     process = spawn("tighten", "-", "-n", "60", *QUICK, stdin=subprocess.PIPE)
     assert process.stdin
     process.stdin.write("# more than a pipe holds, so that it has been read in part\n" * 10000)
+    time.sleep(0.5)  # by then it waits
     while process.poll() is None:  # Python may miss one that comes just before it reads on
         process.send_signal(signal.SIGINT)
         with suppress(subprocess.TimeoutExpired):  # but another one on its way out would end it at once

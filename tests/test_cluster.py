@@ -60,9 +60,17 @@ class Cluster:
             process.wait()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
+    yield cluster
+    cluster.close()
+
+
+@pytest.fixture
+def doomed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A cluster of which a test may kill what it likes."""
+    cluster = Cluster(tmp_path_factory.mktemp("doomed"))
     yield cluster
     cluster.close()
 
@@ -110,13 +118,13 @@ def test_a_search_is_the_same_on_a_cluster(sono: Sono, cluster: Cluster) -> None
 
 
 @pytest.mark.slow
-def test_a_killed_worker_loses_nothing(folder: Path, spawn: Spawn, cluster: Cluster) -> None:
+def test_a_killed_worker_loses_nothing(folder: Path, spawn: Spawn, doomed: Cluster) -> None:
     knots = ["3_1", "4_1", "5_1", "5_2", "6_1", "6_2"]
     process = spawn(
-        "tighten", *knots, "-n", "100", "--trials", "2", "--cluster", cluster.address, "-o", "out/"
+        "tighten", *knots, "-n", "100", "--trials", "2", "--cluster", doomed.address, "-o", "out/"
     )
     wait_for(lambda: any((folder / "out").glob("*.txt")))
-    cluster.kill_a_worker()
+    doomed.kill_a_worker()
     output, messages = process.communicate(timeout=300)
     assert process.returncode == 0, messages
     found = rows(output)
@@ -126,10 +134,10 @@ def test_a_killed_worker_loses_nothing(folder: Path, spawn: Spawn, cluster: Clus
 
 
 @pytest.mark.slow
-def test_a_lost_cluster_leaves_the_best(folder: Path, spawn: Spawn, cluster: Cluster) -> None:
-    process = spawn("search", "3_1", "--time-limit", "600", "--cluster", cluster.address)
+def test_a_lost_cluster_leaves_the_best(folder: Path, spawn: Spawn, doomed: Cluster) -> None:
+    process = spawn("search", "3_1", "--time-limit", "600", "--cluster", doomed.address)
     wait_for((folder / "3_1.tight.txt").exists)
-    cluster.kill_the_scheduler()
+    doomed.kill_the_scheduler()
     output, messages = process.communicate(timeout=120)
     assert process.returncode == 1
     assert "sono: 3_1: the cluster was lost; the best of" in messages

@@ -112,9 +112,9 @@ def test_what_a_curve_is_written_as_is_read_as_the_same_oriented_link(name: str)
 
 
 @pytest.mark.slow
-def test_all_of_the_tables_are_read_as_they_are_written() -> None:
+def test_a_third_of_the_tables_is_read_as_it_is_written() -> None:
     names = [row["knot"] for row in table("knots")] + [row["link"] for row in table("links")]
-    for number, name in enumerate(names):
+    for number, name in enumerate(names[::3]):
         curve = start(f"m{name}" if number % 2 else name)
         again = read("pd", written(curve)[3:])
         assert polynomial(again) == homfly(curve), name
@@ -209,7 +209,7 @@ def linkinfo() -> list[dict[str, str]]:
 
 @pytest.mark.slow
 def test_all_codes_of_knotinfo_are_those_of_its_braids() -> None:
-    for row in knotinfo()[::2]:
+    for row in knotinfo()[::4]:
         braid = homfly(start(row["name"]))
         assert polynomial(read("pd", row["pd_notation"])) == braid
         assert polynomial(read("dt", row["dt_notation"])) == braid

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -41,6 +41,7 @@ def lists(curve: VertexFile) -> list[list[list[float]]]:
 
 
 @pytest.mark.parametrize("suffix", ["txt", "xyz", "vect", "obj", "json", "npz", "npy", "txt.gz"])
+@settings(max_examples=50)
 @given(curve=st.lists(polygons, min_size=1, max_size=4), comments=comments)
 def test_round_trip_keeps_every_bit(
     suffix: str,

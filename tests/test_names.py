@@ -84,9 +84,10 @@ def test_mirror_images() -> None:
 
 @pytest.mark.slow
 def test_variants_differ_but_not_in_type() -> None:
-    for name in ("8_18", "T(2,4)", "1 1 1 2 2 2", "chain3"):
-        starts = [start(name, variant) for variant in range(4)]
-        assert len({curve[0].tobytes() for curve in starts}) == 4
+    # Braids and chains are scrambled, which takes seconds.
+    for name, many in (("8_18", 4), ("T(2,4)", 4), ("1 1 1 2 2 2", 3), ("chain3", 2)):
+        starts = [start(name, variant) for variant in range(many)]
+        assert len({curve[0].tobytes() for curve in starts}) == many
         assert len({fingerprint(curve) for curve in starts}) == 1
     tabled = [start("8_20", variant) for variant in (0, 5, 21, 37, 53, -1, -2, -3, -1000001)]
     assert len({curve[0].tobytes() for curve in tabled}) == len(tabled)

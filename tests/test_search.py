@@ -168,7 +168,7 @@ def test_the_workers_do_not_matter() -> None:
 @pytest.mark.slow
 def test_a_saved_search_goes_on_as_if_it_had_never_stopped() -> None:
     whole = Search()
-    trials = 5 * search.ROUND
+    trials = 3 * search.ROUND
     for _ in whole.run(source("3_1"), trials, here):
         pass
     half = Search()
@@ -194,7 +194,7 @@ def test_shapes_are_told_apart_by_their_radii() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("knot", ["3_1", "7_4", "T(2,4)"])
+@pytest.mark.parametrize("knot", ["3_1", "5_2", "T(2,4)"])
 def test_a_curve_is_searched_by_its_scrambles(knot: str) -> None:
     curve = starts.start(knot)
     unnamed = Source.of(curve)
@@ -340,12 +340,12 @@ class Made:
 def test_a_long_search_stays_small(monkeypatch: pytest.MonkeyPatch) -> None:
     Made(monkeypatch)
     found = Search()
-    for _ in found.run(source("3_1"), 10_000, here):
+    for _ in found.run(source("3_1"), 5_000, here):
         assert len(found.minima) <= search.KEPT
         assert len(found.shapes) <= search.KEPT
         assert len(found.refining) <= search.REFINED * search.LAG
         assert all(len(minimum.met) <= minima.MET for minimum in found.minima)
-    assert found.trials == 10_000
+    assert found.trials == 5_000
     assert len(json.dumps(found.state())) < 1_000_000
     assert [m.length for m in found.minima] == sorted(m.length for m in found.minima)
     assert found.minima[0].hits > 10

@@ -52,22 +52,22 @@ def test_the_writhe_of_an_open_chain_is_what_is_seen_of_it() -> None:
     assert (mirrored.writhe, mirrored.acn) == pytest.approx((-found.writhe, found.acn))
 
 
-def _signs(chain: Floats, view: NDArray[np.float64]) -> list[float]:
+def _signs(chain: Floats, view: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the signs of the crossings that are seen from one side."""
     turned, _ = np.linalg.qr(np.column_stack([view, np.eye(3)[:, :2]]))
-    x, y, z = np.roll(chain @ (turned * np.sign(np.linalg.det(turned))), -1, axis=1).T
-    seen = []
-    for i in range(len(chain) - 1):
-        for j in range(i + 2, len(chain) - 1):
-            u = np.array([x[i + 1] - x[i], y[i + 1] - y[i]])
-            v = np.array([x[j + 1] - x[j], y[j + 1] - y[j]])
-            w = np.array([x[j] - x[i], y[j] - y[i]])
-            turn = u[0] * v[1] - u[1] * v[0]
-            s, t = (w[0] * v[1] - w[1] * v[0]) / turn, (w[0] * u[1] - w[1] * u[0]) / turn
-            if 0 < s < 1 and 0 < t < 1:
-                above = z[i] + s * (z[i + 1] - z[i]) > z[j] + t * (z[j + 1] - z[j])
-                seen.append(math.copysign(1, turn) * (1 if above else -1))
-    return seen
+    corners = np.roll(chain @ (turned * np.sign(np.linalg.det(turned))), -1, axis=1)
+    edges = np.diff(corners, axis=0)
+    i, j = np.triu_indices(len(edges), 2)
+    u, v, w = edges[i], edges[j], corners[j] - corners[i]
+    turn = _turn(u, v)
+    s, t = _turn(w, v) / turn, _turn(w, u) / turn
+    above = corners[i, 2] + s * u[:, 2] > corners[j, 2] + t * v[:, 2]
+    return (np.sign(turn) * np.where(above, 1, -1))[(s > 0) & (s < 1) & (t > 0) & (t < 1)]
+
+
+def _turn(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how far two vectors turn in the plane of x and y."""
+    return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
 
 def test_a_straight_chain_and_a_half_circle() -> None:

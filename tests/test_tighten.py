@@ -30,9 +30,9 @@ def test_the_trefoil_of_480_vertices_beats_the_paper() -> None:
 def test_symmetric_t_2_5_breaks_its_symmetry() -> None:
     # Staying five-fold symmetric it would end at 48.19.
     l_a = [
-        sono.tighten(sono.start("T(2,5)"), 120, method="sono", seed=seed).measures.l_a for seed in range(10)
+        sono.tighten(sono.start("T(2,5)"), 120, method="sono", seed=seed).measures.l_a for seed in range(5)
     ]
-    assert sum(value is not None and value <= 47.35 for value in l_a) >= 8
+    assert sum(value is not None and value <= 47.35 for value in l_a) >= 4
 
 
 @pytest.mark.parametrize(("name", "exact"), [("Hopf", 8 * math.pi), ("chain3", 12 * math.pi + 4)])

@@ -130,7 +130,7 @@ def test_what_is_too_entangled() -> None:
     assert found.known != "invariants"
     assert verify(curve, start("3_1")).verdict == "different"
     with pytest.raises(package.TooEntangledError):
-        verify([polygon(1, 200)], start("3_1"))
+        verify([polygon(1, 140)], start("3_1"))
 
 
 def test_the_public_call() -> None:
@@ -172,7 +172,7 @@ def test_undecided_is_no_success(folder: Path, sono: Sono) -> None:
 def test_wrong_files(folder: Path, sono: Sono) -> None:
     (folder / "crossing.txt").write_text("# 8\n0 0 0\n2 2 0\n2 0 0\n0 2 0\n")
     (folder / "two.gauss").write_text("1 -2 3 -1 2 -3\n-1 2 -3 1 -2 3\n")
-    formats.write(folder / "tangle.txt", [np.random.default_rng(1).normal(size=(200, 3))])
+    formats.write(folder / "tangle.txt", [np.random.default_rng(1).normal(size=(140, 3))])
     for arguments, message in {
         ("crossing.txt", "3_1"): "crossing.txt:2: the curve crosses itself",
         ("3_1", "missing.txt"): "missing.txt: ",

@@ -93,9 +93,11 @@ def waited(call: Callable[[], Result], what: str) -> Result:
 
 def knot_of(source: "Source") -> str | None:
     """Return the name of a knot that a source is; None for a file."""
-    from sono import starts
+    if not source.knot:
+        return None
+    from sono import starts  # here, since files need none of them
 
-    return source.knot if source.knot and starts.knows(source.knot) else None
+    return source.knot if starts.knows(source.knot) else None
 
 
 def file_of(source: "Source", command: str, does: str) -> "VertexFile":
@@ -110,12 +112,12 @@ def file_of(source: "Source", command: str, does: str) -> "VertexFile":
 
 def rope_of(source: "Source") -> "VertexFile":
     """Read a file, or return the rope that the atlas has of a name. Raises `FormatError`."""
+    if not knot_of(source):
+        return source.read()
     from sono import starts
     from sono.formats import FormatError
     from sono.jobs.sources import as_file
 
-    if not knot_of(source):
-        return source.read()
     if rope := starts.known(source.given):
         return as_file(source.given, rope, f"{source.name}, the rope of the atlas")
     source.read()  # says what is wrong with it, if it is no name at all

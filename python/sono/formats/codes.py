@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from functools import cached_property
 from pathlib import PurePath
 
-from sono import starts
 from sono.formats.vertices import Chain, FormatError, Raw, alone
 
 _KIND = r"(?P<kind>pd|dt|gauss)\s*:"
@@ -46,6 +45,8 @@ class Drawn(Sequence[Chain]):
 
     @cached_property
     def _chains(self) -> list[Chain]:
+        from sono import starts  # here, since no other format needs them
+
         try:
             curve = starts.start(self._code)
         except ValueError as error:

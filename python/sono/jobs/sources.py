@@ -10,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from sono import formats, starts
+from sono import formats
 from sono.curve import Components
 from sono.formats import Ends, FormatError, Raw, VertexFile
 
@@ -31,12 +31,12 @@ def is_name(source: str) -> bool:
     """Tell whether this is no file, nor looks like one, but may be the name of a knot."""
     file = formats.split(source)[0]
     is_file = os.path.exists(file) and not os.path.isdir(file)
-    return file != "-" and not is_file and (not set(_OF_FILES) & set(source) or starts.knows(source))
+    return file != "-" and not is_file and (not set(_OF_FILES) & set(source) or _knows(source))
 
 
 def shadowed(source: str) -> bool:
     """Tell whether this is a file here that is called like a knot, which it takes the place of."""
-    return os.path.isfile(source) and not set(_OF_FILES) & set(source) and starts.knows(source)
+    return os.path.isfile(source) and not set(_OF_FILES) & set(source) and _knows(source)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +124,15 @@ def _shortened(knot: str) -> str:
     return name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}~{zlib.crc32(name.encode()):08x}"
 
 
+def _knows(name: str) -> bool:
+    from sono import starts  # here, since most sources are files, which need none of them
+
+    return starts.knows(name)
+
+
 def _drawn(knot: str) -> VertexFile:
+    from sono import starts
+
     try:
         curve = starts.drawn(knot)
     except ValueError as error:
