@@ -11,7 +11,10 @@ if (location.protocol === "file:")
 
     load(url) {
       const inner = this.frame.contentWindow;
-      inner.postMessage = (data) => setTimeout(() => this.onmessage?.(new MessageEvent("message", { data })));
+      inner.postMessage = (sent) => {
+        const data = structuredClone(sent); // as a worker does, which shares nothing
+        setTimeout(() => this.onmessage?.(new MessageEvent("message", { data })));
+      };
       const script = inner.document.createElement("script");
       script.src = new URL(url, location);
       const loaded = new Promise((done) => (script.onload = done));
@@ -19,7 +22,8 @@ if (location.protocol === "file:")
       return loaded;
     }
 
-    postMessage(data) {
+    postMessage(sent) {
+      const data = structuredClone(sent);
       this.ready.then(() => this.frame.contentWindow?.dispatchEvent(new MessageEvent("message", { data })));
     }
 
