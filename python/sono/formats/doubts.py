@@ -39,7 +39,7 @@ def ends_apart(vertices: Floats) -> bool:
     The edge that closes a ring is one of its bonds, and these vary.
     """
     edges = np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1)
-    return bool(edges[-1] > max(RING * edges[:-1].max(), LONGEST * np.median(edges)))
+    return bool(edges[-1] > RING * edges[:-1].max() and edges[-1] > LONGEST * np.median(edges))
 
 
 @np.errstate(over="ignore", invalid="ignore")
