@@ -17,6 +17,7 @@ from sono import starts
 from sono.searching.minima import Minimum
 from sono.searching.search import Search
 from sono.searching.trials import Source, attempt
+from sono.tables import published
 
 TRIALS = 32
 
@@ -63,29 +64,29 @@ class OneCore:
                 raise EnoughError
 
 
-def searched(knot: str, published: float) -> tuple[bool, float, OneCore]:
+def searched(knot: str, enough: float) -> tuple[bool, float, OneCore]:
     """Tell whether a search meets the published length, and in how many seconds."""
     source = Source.of(starts.start(knot), knot)
-    core = OneCore(source, published)
+    core = OneCore(source, enough)
     begun = time.process_time()
     try:
         for _ in Search().run(source, TRIALS, core.submit):
             pass
     except EnoughError:
         pass
-    return core.best <= published, time.process_time() - begun, core
+    return core.best <= enough, time.process_time() - begun, core
 
 
 def main(knots: list[str]) -> None:
     """Search the knots; print a row for each, and what they come to on stderr."""
-    published = {row["knot"]: float(row["ropelength"]) for row in starts.table("published")}
-    all_seconds = []
+    all_seconds, lengths = [], published.table()
     print("knot\tpublished\tmet\tseconds\ttrials\tbest", flush=True)
-    for knot in knots or list(published)[:KNOTS]:
-        met, seconds, core = searched(knot, published[knot])
+    for knot in knots or [row["knot"] for row in starts.table("knots")][:KNOTS]:
+        length = float(str(lengths[knot]["published"]))
+        met, seconds, core = searched(knot, length)
         all_seconds.append(seconds if met else float("inf"))
         figures = f"{seconds:.2f}", core.trials, f"{core.best:.4f}"
-        print(knot, published[knot], "yes" if met else "no", *figures, sep="\t", flush=True)
+        print(knot, length, "yes" if met else "no", *figures, sep="\t", flush=True)
     met_knots = sum(map(float("inf").__gt__, all_seconds))
     print(f"{met_knots} of {len(all_seconds)} met, median {median(all_seconds):.2f} s", file=sys.stderr)
 
