@@ -30,6 +30,11 @@ QUICK = ("--trials", "1", "--set", "anneal_sweeps=5000")
 """Options with which 60 beads of a trefoil are tight in a few hundredths of a second."""
 
 
+def pytest_xdist_auto_num_workers() -> int:
+    """Work on one test more than there are cores, as some wait for a signal, a browser or a clock."""
+    return (os.cpu_count() or 1) + 1
+
+
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder to work in, but for two starting conformations."""

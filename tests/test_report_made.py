@@ -203,9 +203,11 @@ def test_what_is_made_cannot_be_written_down(sono: Sono, folder: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="needs Unix signals")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_signals(number: int, jobs: str, spawn: Spawn, sono: Sono, folder: Path, written: Written) -> None:
+@pytest.mark.parametrize(
+    ("jobs", "number"),
+    [("1", signal.SIGINT), ("1", signal.SIGKILL), ("2", signal.SIGINT), ("2", signal.SIGTERM)],
+)
+def test_signals(jobs: str, number: int, spawn: Spawn, sono: Sono, folder: Path, written: Written) -> None:
     command = ("report", "composites", "-o", "site", "-j")
     process = spawn(*command, jobs)
     wait_for(lambda: (folder / "site" / MADE).exists() and len(lines(folder / "site")) >= 3)
