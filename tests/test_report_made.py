@@ -155,7 +155,7 @@ def test_another_version_makes_all_anew(
     sono: Sono, written: Written, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sono("report", "3_1", "-o", "site")
-    monkeypatch.setattr("sono.cli.report.version", lambda _: "99.0")
+    monkeypatch.setattr(package, "__version__", "99.0")
     sono("report", "3_1", "-o", "site", "--force")
     assert written == ["3_1", "3_1"]
 

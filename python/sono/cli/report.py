@@ -5,12 +5,12 @@ import re
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+import sono
 from sono.cli import options, places
 from sono.cli.each import rope_of
 from sono.cli.reported import atlas, gathered
@@ -174,7 +174,7 @@ def _made(task: Task) -> "Made | str":
         measures_of(curve)  # says in which line it is none
         knot = place(task.source.given).knot if task.source.knot else ""
         _, row = atlas().get(knot, ("", {}))
-        key = digest(curve, version("sono"), task.source.name, row, [*curve.comments], curve.doubts())
+        key = digest(curve, sono.__version__, task.source.name, row, [*curve.comments], curve.doubts())
         return _earlier(task, key) or _anew(task, key, curve, row)
     except FormatError as error:
         return str(error)

@@ -25,7 +25,7 @@ def report() -> Iterator[tuple[str, str]]:
     """Say what there is, and in which version."""
     from importlib import metadata  # here, since it takes a tenth of the time of a short command
 
-    yield "sono", metadata.version("sono")
+    yield "sono", sono.__version__
     yield "core", _core()
     yield "Python", f"{platform.python_version()}, {platform.python_implementation()}"
     yield "platform", platform.platform()

@@ -7,25 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sono.curve import Floats
+from sono.starts.archive import differences
 
 Whole = NDArray[np.int64]
 
-SMOOTH = 3
-"""So many times differences are taken of vertices, which leave little of a smooth curve."""
-
 
 def vertices(points: Floats) -> dict[str, Any]:
-    """Return vertices (n, 3) in steps of 1/2^24 of their extent from a corner.
-
-    Each is the difference from the one before it, that the difference of differences, and SMOOTH of these.
-    What is below 0 is folded in: 0, -1, 1, -2, ... are 0, 1, 2, 3, ...
-    """
+    """Return vertices (n, 3) in steps of 1/2^24 of their extent from a corner, by their third differences."""
     corner, step = points.min(axis=0), float(np.ptp(points, axis=0).max()) / ((1 << 24) - 1)
     steps = np.rint((points - corner) / step).astype(np.int64)
-    for _ in range(SMOOTH):
-        steps = np.diff(steps, axis=0, prepend=np.zeros((1, 3), np.int64))
-    folded = np.where(steps < 0, -1 - 2 * steps, 2 * steps)
-    return {"corner": corner.tolist(), "step": step, "vertices": _digits(folded.ravel())}
+    return {"corner": corner.tolist(), "step": step, "vertices": _digits(differences(steps).ravel())}
 
 
 def shares(values: Floats, most: float) -> str:

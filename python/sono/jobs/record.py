@@ -9,10 +9,10 @@ import os
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
 
+import sono
 from sono import formats
 from sono.curve import Components, polygon
 from sono.formats import VertexFile
@@ -48,7 +48,7 @@ class Records:
         record = {
             "format": FORMAT,
             "version": VERSION,
-            "program": f"sono {version('sono')}",
+            "program": f"sono {sono.__version__}",
             "input": self.input,
             "output": {**_of_file(output), **_of_curve(tight.curve)},
             "status": status,

@@ -18,6 +18,7 @@ from collections.abc import Mapping
 from typing import IO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sono.curve import Components
 
@@ -33,14 +34,8 @@ BYTES = 8
 
 def packed(curve: Components) -> bytes:
     """Return the bytes of a rope, of R_s = 1 or about that."""
-    differences = [
-        np.diff(
-            np.rint(PARTS * component).astype(np.int64), n=ORDER, axis=0, prepend=np.zeros((ORDER, 3), int)
-        )
-        for component in curve
-    ]
-    signed = np.vstack(differences).ravel()
-    numbers = np.concatenate([[len(curve)], [len(c) for c in curve], 2 * abs(signed) - (signed < 0)])
+    folded = [differences(np.rint(PARTS * component).astype(np.int64)).ravel() for component in curve]
+    numbers = np.concatenate([[len(curve)], [len(c) for c in curve], *folded])
     return zlib.compress(numbers.astype("<u8").view(np.uint8).reshape(-1, BYTES).T.tobytes(), 9)
 
 
@@ -55,6 +50,16 @@ def unpacked(data: bytes) -> Components:
     for _ in range(ORDER):
         components = [component.cumsum(axis=0) for component in components]
     return [component / PARTS for component in components]
+
+
+def differences(whole: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the third differences (n, 3) of whole numbers (n, 3), 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
+
+    >>> differences(np.array([[0, 5, 0], [1, 5, 0], [2, 5, 0]])).tolist()
+    [[0, 10, 0], [2, 19, 0], [1, 10, 0]]
+    """
+    signed = np.diff(whole, n=ORDER, axis=0, prepend=np.zeros((ORDER, 3), np.int64))
+    return np.where(signed < 0, -1 - 2 * signed, 2 * signed)
 
 
 def written(ropes: Mapping[str, bytes]) -> bytes:
